@@ -82,14 +82,14 @@ class AnswersAlone(Board):
                          ("made-up-1", ["letter A", "letter E", "star"]))
 
         self.leaderboard("build")
-        self.assertEqual(self.row("made-up-1")[2], "recomputed; not yet replayed; answers as submitted")
+        self.assertEqual(self.row("made-up-1")[3], "recomputed; not yet replayed; answers as submitted")
         (self.dir / "made_up.json").unlink()  # the board has what its entry stands on
         said = self.leaderboard("verify", "--by", "B. Reader").stdout
         self.assertRegex(said, r"^agrees  entries/lga/\S+: 2 of 2 cells bit-identical, 0 of 8 episodes ended differently")
         self.leaderboard("vouch", entry["id"], "1")
         self.leaderboard("build")
         self.assertIn("1 entry, 0 problems", self.leaderboard("check").stdout)
-        self.assertEqual([self.row("made-up-1")[i] for i in (0, 3)], ["–", "replayed; answers as submitted"])
+        self.assertEqual([self.row("made-up-1")[i] for i in (0, 4)], ["–", "replayed; answers as submitted"])
         for file in "README.md", "index.html", "tiny.html":
             page = (self.dir / "board" / file).read_text()
             self.assertIn("answers as submitted", page.split("What the words mean")[0], file)
@@ -168,7 +168,7 @@ class AnswersAlone(Board):
             self.leaderboard("build")
             self.assertIn("2 entries, 0 problems", self.leaderboard("check").stdout)
             for label in entries:
-                self.assertEqual([self.row(label)[i] for i in (0, 3)], ["–", "replayed; answers as submitted"], (label, tracks))
+                self.assertEqual([self.row(label)[i] for i in (0, 4)], ["–", "replayed; answers as submitted"], (label, tracks))
         # Each file competes for itself: neither is hidden as another row of one method.
         self.assertNotIn("<tr class=more>", (self.dir / "board/tiny.html").read_text())
 

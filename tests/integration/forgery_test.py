@@ -59,8 +59,13 @@ class Forgeries(Case):
         """id -> (rank, rest of the row) in README.md; and what waits for a replay."""
         self.leaderboard("build")
         text = (self.board / "README.md").read_text()
-        return {re.search(r"entries/\w+/(\w+)/", line)[1]: [word.strip() for word in line.split("|")[1:5]]
-                for line in text.splitlines() if line.startswith("|") and "entries/" in line}
+        rows = {}
+        for line in text.splitlines():
+            if line.startswith("|") and "entries/" in line:
+                words = [word.strip() for word in line.split("|")[1:6]]
+                del words[2 if re.fullmatch(r"\d+|–", words[0]) else 1]  # the policy
+                rows.setdefault(re.search(r"entries/\w+/(\w+)/", line)[1], words[:4])
+        return rows
 
     def check(self, *words, expect):
         """What `check` of the request says, its pages built by whoever forged it."""
@@ -107,7 +112,7 @@ class Forgeries(Case):
         rows = self.rows()
         self.assertEqual(rows.pop(forged.parent.name)[:3], ["LGA", "1.000", "recomputed; not yet replayed"])
         self.assertEqual(rows, self.before)
-        self.assertIn("| not yet replayed | claimed success |", (self.board / "README.md").read_text())
+        self.assertIn("| not yet replayed | policy | claimed success |", (self.board / "README.md").read_text())
         self.assertNotIn(forged.parent.name, (self.board / "leaderboard.csv").read_text())
 
     def test_lines_of_its_own_make_it_no_better(self):
@@ -202,6 +207,9 @@ class Forgeries(Case):
         (self.board / "tracks.json").write_text(json.dumps({"open": ["q2-leaderboard"]}))
         self.assertIn("tracks.json: changed since HEAD: it is the maintainers'", self.check(expect=1))
         (self.board / "tracks.json").unlink()
+        (self.board / "scenes.json").write_text("{}")
+        self.assertIn("scenes.json: changed since HEAD: it is the maintainers'", self.check(expect=1))
+        (self.board / "scenes.json").unlink()
         (self.rival / "verifications.jsonl").write_text("")
         self.assertIn("verifications.jsonl: a verification changed since HEAD", self.check(expect=1))
 
@@ -316,6 +324,8 @@ class Forgeries(Case):
                            ("entries/.gitattributes", "entries/.gitattributes: expected only directories"), (".adding/x.html", ".adding/x.html: no file of a board"),
                            (".adding/entries/a/b/.htaccess", ".adding/entries/a/b/.htaccess: no file of a board"),
                            (".adding/README.md", ".adding/README.md: no file of a board"),
+                           ("scenes/x.html", "scenes/x.html: no picture that scenes.json lists"),
+                           ("scenes/.git/config", "scenes/.git: no picture that scenes.json lists"),
                            ("entries/lga/.htaccess", "entries/lga/.htaccess: expected only directories"), ("entries/lga/a/HEAD", "a/HEAD: expected only directories"),
                            (f"{self.rival.relative_to(self.board)}/.git/config", ".git: expected only entry.json, cells.jsonl and verifications.jsonl")):
             for words in [], ["--against", "HEAD"]:

@@ -419,7 +419,7 @@ class Replays(Board):
         self.forge(lambda line: {"outcomes": {"test": "...."}, "digest": "0" * 64})
 
     def tier(self):
-        return (self.dir / "board/README.md").read_text().split("| fixture_constant |")[1].split("|")[1].strip()
+        return (self.dir / "board/README.md").read_text().split("| fixture_constant |")[1].split("|")[2].strip()
 
     def test_an_honest_entry_is_bit_identical(self):
         said = self.verify("--cells", "3")
@@ -433,6 +433,27 @@ class Replays(Board):
         lines = [json.loads(line) for line in (self.entry / "verifications.jsonl").read_text().splitlines()]
         self.assertEqual([len(line["cells"]) for line in lines], [3, 8])
         self.assertNotEqual(lines[0]["nonce"], lines[1]["nonce"])
+
+    def test_scenes_are_drawn_of_what_the_entry_says(self):
+        board, name = self.dir / "board", self.entry.parent.name
+        said = self.leaderboard("scenes", *PLUGIN).stdout.split()
+        scenes = json.loads((board / "scenes.json").read_text())[name]
+        self.assertTrue(scenes)
+        self.assertEqual(said, [f"scenes/{name}-{which}.png" for which in scenes])
+        cells = {line["key"]: line for line in map(json.loads, (self.entry / "cells.jsonl").read_text().splitlines())}
+        for which, scene in scenes.items():
+            png = (board / f"scenes/{name}-{which}.png").read_bytes()
+            self.assertEqual((png[:4], hashlib.sha256(png).hexdigest()), (b"\x89PNG", scene["sha256"]))
+            letter = cells[scene["cell"]]["outcomes"][scene["arm"]][scene["index"]]
+            self.assertEqual(letter == ".", which == "best")
+            self.assertEqual(cells[scene["cell"]]["demonstrations"], 2, "the fewest")
+        self.leaderboard("build")
+        self.assertIn("1 entry, 0 problems", self.leaderboard("check").stdout)
+        self.assertEqual(self.leaderboard("scenes", *PLUGIN).stdout, "", "it has its pictures")
+        (board / "scenes.json").unlink()
+        self.forge(lambda line: {"outcomes": {"test": "".join("a" if letter == "." else "." for letter in line["outcomes"]["test"])}})
+        self.assertRegex(self.leaderboard("scenes", *PLUGIN, expect=2).stderr, "no scenes: .*none of the first 4 episodes ends here as in the entry")
+        self.assertFalse((board / "scenes.json").exists())
 
     def test_a_made_up_cell_is_found_and_not_outvoted(self):
         honest = (self.entry / "cells.jsonl").read_bytes()

@@ -12,6 +12,7 @@ import statistics
 import subprocess
 import unittest
 
+import visible
 from case import Case, command_line
 
 SOURCE = pathlib.Path(__file__).parents[2]
@@ -79,12 +80,50 @@ class Published(Case):
         golden = pathlib.Path(__file__).parent / "golden/ranks.json"
         self.call("leaderboard", "build", "--board", shutil.copytree(BOARD, self.dir / "board"))
         with open(self.dir / "board/leaderboard.csv", newline="") as file:
-            rows = {row["id"]: row for row in csv.DictReader(file) if row["demonstrations"] == "all"}
-        found = {name: f'{row["rank"] or "-"} {row["success"]}' for name, row in rows.items()}
+            rows = {(row["id"], row["ranking"]): row for row in csv.DictReader(file) if row["demonstrations"] == "all"}
+        found = {" ".join(name): f'{row["rank"] or "-"} {row["success"]}' for name, row in rows.items()}
         if os.environ.get("LGABENCH_WRITE_GOLDEN"):
             golden.write_text(json.dumps(found, sort_keys=True, indent=0) + "\n")
         self.assertEqual(found, json.loads(golden.read_text()))
         self.assertEqual({row["tier"] for row in rows.values()} - {"replayed", "reproduced"}, set())
+
+    def test_a_ranking_is_sorted_by_success_and_its_ranks_do_not_decrease(self):
+        with open(BOARD / "leaderboard.csv", newline="") as file:
+            rows = [row for row in csv.DictReader(file) if row["demonstrations"] == "all"]
+        rankings = {}
+        for row in rows:
+            rankings.setdefault((row["suite"], row["preset"], row["ranking"]), []).append(row)
+        self.assertEqual({ranking for _, _, ranking in rankings}, {"any policy", "paper's network", "answers only"})
+        for name, own in rankings.items():
+            success, ranks = [float(row["success"]) for row in own], [int(row["rank"]) for row in own if row["rank"]]
+            self.assertEqual(success, sorted(success, reverse=True), name)
+            self.assertEqual(ranks, sorted(ranks), name)
+            self.assertTrue(all(row["not_ranked"] for row in own if not row["rank"]), "a row without a rank says why")
+
+    def test_a_reader_meets_no_ids(self):
+        """Suites, arms, scenarios, methods, policies: a page has their titles."""
+        suites = {file.stem: json.loads(file.read_text())["about"] for file in SOURCE.glob("envs/*/suites/*.json")}
+        untitled = [id for id, about in suites.items() if "title" not in about]
+        for page in sorted(BOARD.glob("*.html")):
+            with self.subTest(page.name):
+                self.assertEqual(visible.ids(page.read_text(), untitled), [])
+
+    def test_what_build_does_for_a_new_entry_is_what_its_page_shows(self):
+        """docs/entering-the-leaderboard.md, step 4, with the entry of steps 1 to 3 as it was played once."""
+        step = (SOURCE / "docs/entering-the-leaderboard.md").read_text().split("## 4. Add it")[1].split("\n## ")[0]
+        place, = re.findall(r"`added (entries/\S+)`", step)
+        shutil.copytree(BOARD, self.dir / "results/leaderboard")
+        board = pathlib.Path("results/leaderboard")
+        self.call("leaderboard", "build", "--board", board)  # as this build writes it, before the entry
+        shutil.copytree(pathlib.Path(__file__).parent / "golden/entered", self.dir / board / place)
+        printed = self.call("leaderboard", "build", "--board", board).stdout + self.call("leaderboard", "check", "--board", board).stdout
+        shown = [line.strip() for line in re.findall("^    (.*)$", step, re.M)]
+        self.assertEqual([line for line in shown if line in printed.splitlines()], printed.splitlines(), "build and check print these lines")
+        readme = (self.dir / board / "README.md").read_text().splitlines()
+        self.assertTrue([line for line in shown if line.startswith("|")])
+        for line in shown:
+            if line.startswith("|"):
+                self.assertIn(line, readme)
 
     @unittest.skipUnless(os.environ.get("LGABENCH_FULL"), "./test --full plays it")
     def test_a_cell_of_each_method_is_what_this_build_plays(self):

@@ -3,11 +3,14 @@
 
 #include <cstdlib>
 #include <ctime>
+#include <tuple>
 
 #include <lgabench/leaderboard/check.hpp>
 #include <lgabench/leaderboard/pages.hpp>
+#include <lgabench/leaderboard/scenes.hpp>
 #include <lgabench/leaderboard/suite_page.hpp>
 
+#include "../schemas.hpp"
 #include "leaderboard_board.hpp"
 #include "testing.hpp"
 
@@ -111,8 +114,7 @@ TEST(Board, APageBeginsWithTheBestRowOfEachMethod) {
   const std::size_t more = page.find("<tr class=more>");
   ASSERT_NE(more, page.npos);
   EXPECT_SAYS(page.substr(more, page.find("</tr>", more) - more), "method_of_a, loss=squared");
-  EXPECT_SILENT(index, "loss=squared");
-  EXPECT_SAYS(index, "2 of 3 entries, the best of each method");
+  EXPECT_SAYS(index, "loss=squared") << "the first page has every row of every suite";
   for (const char* words :
        {"not yet replayed", "claimed by", "answers as submitted", "does not say that they are equal"})
     EXPECT_SAYS(index, words);
@@ -127,27 +129,148 @@ TEST(Board, SuitesComeInThePapersOrderAndThoseWithoutARankLast) {
   }
   build(board.path);
   const std::string page = read_file(board.path / "README.md");
-  EXPECT_LT(page.find("## q1"), page.find("## mobile"));
-  EXPECT_LT(page.find("## mobile"), page.find("## z_ranked"));
-  EXPECT_LT(page.find("## z_ranked"), page.find("## a_diagnosis"));
+  EXPECT_LT(page.find("(q1.html)"), page.find("(mobile.html)"));
+  EXPECT_LT(page.find("(mobile.html)"), page.find("(z_ranked.html)"));
+  EXPECT_LT(page.find("(z_ranked.html)"), page.find("(a_diagnosis.html)"));
 }
 
-TEST(Board, ARowBelowTheRandomObjectSaysSoAndTheIndexSaysWhatItLeavesOut) {
+TEST(Board, ARowBelowTheRandomObjectSaysSo) {
   const TemporaryDirectory board;
   const Setting setting = small_setting();
   write_replayed(board.path, made_entry(setting, "random_object", .5, "reference"));
   for (int i = 0; i < 12; ++i) write_replayed(board.path, made_entry(setting, fmt::format("m{}", i), i == 0 ? .2 : .8));
   build(board.path);
-  EXPECT_SAYS(read_file(board.path / "index.html"),
-              "10 of 12 entries, the best of each method; <a href=\"q1.html\">all of them</a>");
-  EXPECT_SAYS(read_file(board.path / "index.html"), "random visible object") << "reference rows stay";
   const std::string page = read_file(board.path / "README.md"), suite = read_file(board.path / "q1.html");
-  EXPECT_SILENT(page, "of 12 entries");
   EXPECT_SAYS(page, "]§ |");
   EXPECT_SAYS(page, "§ below the random visible object, which needs no demonstration.");
   EXPECT_SAYS(suite, "<span title=\"below the random visible object, which needs no demonstration\">§</span>");
   EXPECT_LT(suite.find("method_of_m1<"), suite.find("random visible object<"));
   EXPECT_LT(suite.find("random visible object<"), suite.find("method_of_m0<"));
+}
+
+// q1 with a policy on the paper's network and one beside it.
+void write_two_policies(const fs::path& board) {
+  for (const auto& [name, policy, rate] : {std::tuple("a", "heat_map", .9), {"b", "regression", .5}}) {
+    Entry entry = made_entry(small_setting(), name, rate);
+    entry.identity.row.options["policy"] = policy;
+    write_replayed(board, entry);
+  }
+}
+
+TEST(Board, EachRankingIsATableOfItsOwn) {
+  const TemporaryDirectory board;
+  write_two_policies(board.path);
+  write_file(board.path / "labels.json", R"({"values": {"policy=heat_map": "heat map"}})");
+  build(board.path);
+  EXPECT_SAYS(read_file(board.path / "README.md"), "| 1 | method_of_a | heat map |");
+  const std::string csv = read_file(board.path / "leaderboard.csv"), page = read_file(board.path / "q1.html");
+  EXPECT_SAYS(csv, ",demonstrations,ranking,rank,success,");
+  EXPECT_SAYS(csv, ",all,any policy,1,");
+  EXPECT_SAYS(csv, ",all,any policy,2,");
+  EXPECT_SAYS(csv, ",all,paper's network,1,");
+  EXPECT_SAYS(page, "<section id=\"table1\" aria-labelledby=\"table1-title\"><h2 id=\"table1-title\">Any policy</h2>");
+  EXPECT_SAYS(page, "<h2 id=\"table2-title\">Paper's network</h2>");
+  const std::string second = page.substr(page.find("<section id=\"table2\""));
+  EXPECT_SILENT(second.substr(0, second.find("</section>")), "method_of_a");
+}
+
+TEST(Board, ThePreviewOfALinkSaysWhatThePageIs) {
+  const TemporaryDirectory board;
+  write_replayed(board.path, made_entry(small_setting(), "a", .5));
+  build(board.path);
+  for (const char* file : {"index.html", "q1.html"})
+    for (const char* part : {"<link rel=icon href=\"data:image/svg+xml,", "<meta property=og:title content=\"lgabench",
+                             "<meta property=og:description content=\""})
+      EXPECT_SAYS(read_file(board.path / file), part) << file;
+}
+
+TEST(Board, ABuildNamesTheFilesThatItChanged) {
+  const TemporaryDirectory board;
+  write_replayed(board.path, made_entry(small_setting(), "a", .5));
+  EXPECT_EQ(build(board.path).size(), 4u);
+  EXPECT_EQ(build(board.path), std::vector<fs::path>());
+  Setting other = small_setting();
+  other.suite = "mobile";
+  write_replayed(board.path, made_entry(other, "a", .5));
+  std::vector<std::string> names;
+  for (const fs::path& file : build(board.path)) names.push_back(file.filename());
+  EXPECT_EQ(names, (std::vector<std::string>{"README.md", "index.html", "leaderboard.csv", "mobile.html"}));
+}
+
+// A board with one entry and its pictures; `bytes` of the best.
+Entry write_scenes_of_one(const fs::path& board, const std::string& bytes = "a picture") {
+  Entry entry = made_entry(small_setting(), "a", .5);
+  write_replayed(board, entry);
+  const PlayedCell& cell = entry.cells.front();
+  Json scenes;
+  for (const auto& [which, letter] : {std::pair("best", '.'), {"worst", 'a'}}) {
+    scenes[entry.id()][which] = {{"cell", cell.key},
+                                 {"arm", "test"},
+                                 {"index", cell.outcomes.at("test").find(letter)},
+                                 {"command", "Bring me the heart."},
+                                 {"sha256", sha256(bytes)}};
+    write_file(board / scene_picture(entry.id(), which), bytes);
+  }
+  write_file(board / scenes_file, scenes.dump());
+  build(board);
+  return entry;
+}
+
+TEST(Board, ScenesAreThoseThatTheMaintainersList) {
+  const TemporaryDirectory board;
+  const Entry entry = write_scenes_of_one(board.path);
+  const auto problems = [&board] { return all(check(board.path).problems); };
+  EXPECT_EQ(problems(), "");
+  EXPECT_EQ(complaints("scenes", read_json(board.path / scenes_file)), std::vector<std::string>());
+  EXPECT_SAYS(read_file(board.path / "q1.html"), "scenes/" + entry.id() + "-best.png");
+  write_file(board.path / "scenes/other.png", "a picture");
+  EXPECT_EQ(problems(), "scenes/other.png: no picture that scenes.json lists");
+  fs::remove(board.path / "scenes/other.png");
+  write_file(board.path / scene_picture(entry.id(), "best"), "another");
+  EXPECT_EQ(problems(), "scenes/" + entry.id() + "-best.png: not the picture whose SHA-256 scenes.json has");
+  fs::remove(board.path / scene_picture(entry.id(), "best"));
+  EXPECT_EQ(problems(), "scenes/" + entry.id() + "-best.png: expected the picture that scenes.json lists");
+  fs::create_symlink("/etc/hostname", board.path / scene_picture(entry.id(), "best"));
+  EXPECT_SAYS(problems(), "-best.png: expected the picture that scenes.json lists");
+  fs::remove(board.path / scenes_file);
+  EXPECT_SAYS(problems(), "-worst.png: no picture that scenes.json lists");
+}
+
+TEST(Board, ScenesAreSmall) {
+  const TemporaryDirectory board, large;
+  write_scenes_of_one(board.path, std::string(most_picture_bytes, 'a'));
+  EXPECT_EQ(all(check(board.path).problems), "");
+  write_scenes_of_one(large.path, std::string(most_picture_bytes + 1, 'a'));
+  EXPECT_SAYS(all(check(large.path).problems), "-best.png: expected at most 18000 bytes, got 18001");
+  const std::string picture(most_picture_bytes, 'a');
+  BoardScenes many;
+  for (int i = 0; i < 600; ++i) {
+    write_file(board.path / scene_picture(std::to_string(i), "best"), picture);
+    many[std::to_string(i)]["best"].sha256 = sha256(picture);
+  }
+  EXPECT_SAYS(all(problems_of_scenes(board.path, many)),
+              "scenes/: expected at most 10000000 bytes in all, got 10800000");
+}
+
+TEST(Board, SceneSaysNothingThatItsEntryDoesNot) {
+  const TemporaryDirectory board;
+  const Entry entry = write_scenes_of_one(board.path);
+  const Json good = read_json(board.path / scenes_file);
+  const Json::json_pointer best("/" + entry.id() + "/best");
+  for (const auto& [member, value, problem] :
+       {std::tuple("index", Json(entry.cells.front().outcomes.at("test").find('a')),
+                   "expected an episode that succeeded"),
+        {"index", Json(40), "/best/index: "},
+        {"arm", Json("hard"), "expected an arm of the cell"},
+        {"cell", Json("0123456789abcdef"), "expected a cell of the entry"},
+        {"note", Json("more"), "unknown member \"note\""}}) {
+    Json scenes = good;
+    scenes[best][member] = value;
+    write_file(board.path / scenes_file, scenes.dump());
+    EXPECT_SAYS(all(check(board.path).problems), problem) << member;
+  }
+  write_file(board.path / scenes_file, Json{{"0123456789abcdef", good.at(entry.id())}}.dump());
+  EXPECT_SAYS(all(check(board.path).problems), "expected an entry of the board");
 }
 
 void replace_in(const fs::path& file, const std::string& old, const std::string& with) {
@@ -278,7 +401,7 @@ TEST(Board, TwoHundredEntriesAreCheckedAsFastAsBuiltOnPagesOfThreeMegabytes) {
   for (const fs::path& entry : entry_directories(board))
     EXPECT_LT(fs::file_size(board / entry / "cells.jsonl") + fs::file_size(board / entry / "entry.json"), 300'000u);
   const std::string page = read_file(board / "q1.html");
-  for (const char* reference : {"src=\"http", "href=\"http", "url(http", "@import"})
+  for (const char* reference : {"src=\"http", "rel=stylesheet", "url(http", "@import"})
     EXPECT_SILENT(page, reference) << "a page needs nothing from elsewhere";
 }
 

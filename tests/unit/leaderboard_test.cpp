@@ -1,6 +1,8 @@
 // Entries of a leaderboard: what is written is read again, what was changed is found.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <utility>
 
 #include <cmath>
@@ -386,7 +388,7 @@ TEST(Standings, TiesShareARankAndOnlyASignificantlyBetterEntryComesBefore) {
   EXPECT_DOUBLE_EQ(*all[1].precision, .5);
 }
 
-TEST(Standings, OnlyTheOpenTrackRanksAcrossPoliciesAndTheAbstractionTrackNobody) {
+TEST(Standings, EachRankingRanksItsOwnRowsAndAnswersOnlyNobody) {
   const Setting setting = small_setting();
   std::vector<Entry> entries{replayed_entry(setting, "a", .8), replayed_entry(setting, "b", .3),
                              replayed_entry(setting, "c", .5)};
@@ -395,17 +397,55 @@ TEST(Standings, OnlyTheOpenTrackRanksAcrossPoliciesAndTheAbstractionTrackNobody)
   entries[1].identity.row.id = "factorial";
   entries[1].identity.row.options["policy"] = "heat_map";
   entries[1].identity.row.options["input"] = "object_mask";
+  entries[2].identity.row.options["policy"] = "regression";
   std::vector<const Entry*> table;
   for (const Entry& entry : entries) table.push_back(&entry);
-  const auto rank_of_c = [&table](const Track& track) { return standings(table, track)[1].rank; };
-  EXPECT_EQ(rank_of_c({}), 1) << "the only one with its policy";
-  EXPECT_EQ(rank_of_c({Track::open}), 2);
-  EXPECT_FALSE(rank_of_c({Track::abstraction, {"test"}}));
-  const std::vector<Standing> all = standings(table, {Track::abstraction, {"test"}});
+  EXPECT_EQ(standings(table)[1].rank, 2) << "any policy";
+  const std::vector<Standing> papers = standings(table, {}, Ranking::papers_network);
+  ASSERT_EQ(papers.size(), 1u) << "the only one with the paper's network";
+  EXPECT_EQ(papers[0].rank, 1);
+  const std::vector<Standing> all = standings(table, {Track::abstraction, {"test"}}, Ranking::answers_only);
+  for (const Standing& s : all) EXPECT_FALSE(s.rank);
   EXPECT_NEAR(*all[0].gap_closed, 1, 1e-12);
   EXPECT_NEAR(*all[2].gap_closed, 0, 1e-12);
   EXPECT_NEAR(*all[1].gap_closed, (*all[1].in_track - *all[2].in_track) / (*all[0].in_track - *all[2].in_track), 1e-12);
   EXPECT_FALSE(standings(table).front().gap_closed);
+  EXPECT_EQ(rankings_of({}), (std::vector{Ranking::any_policy, Ranking::papers_network}));
+  EXPECT_EQ(rankings_of({Track::open, {}}), std::vector{Ranking::any_policy});
+  EXPECT_EQ(rankings_of({Track::abstraction, {"test"}}), std::vector{Ranking::answers_only});
+}
+
+// B succeeds where A does, but for one scene of each arm; C loses as many and one more, in other scenes than A, so that
+// its difference is less sure.
+TEST(Standings, ARowWithMoreSuccessHasNoGreaterRankAndSuccessAloneOrdersRows) {
+  const Setting setting = small_setting();
+  Entry a = replayed_entry(setting, "a", .6), b = a, c = a;
+  b.identity.row.id = "method_of_b";
+  c.identity.row.id = "method_of_c";
+  const auto lose_one = [](std::string& letters) { letters[letters.find('.')] = 'a'; };
+  for (Entry* entry : {&b, &c}) {
+    for (PlayedCell& cell : entry->cells)
+      for (auto& [arm, letters] : cell.outcomes) {
+        if (entry == &c) std::reverse(letters.begin(), letters.end());
+        lose_one(letters);
+      }
+    if (entry == &c) lose_one(c.cells[0].outcomes["test"]);
+    entry->verifications = Json::array();
+    add_vouched(*entry, replay_of(*entry, "b", "a processor"));
+  }
+  Entry truth = replayed_entry(setting, "human", .9);
+  truth.identity.row.asks = "truth";
+  const std::vector<Standing> all = standings({&c, &truth, &b, &a});
+  ASSERT_EQ(all.size(), 4u);
+  EXPECT_EQ(all[0].entry, &truth) << "an upper bound stands where its success puts it";
+  EXPECT_FALSE(all[0].rank);
+  EXPECT_EQ(all[1].entry, &a);
+  EXPECT_EQ(all[2].entry, &b);
+  EXPECT_EQ(all[1].rank, 1);
+  EXPECT_EQ(all[2].rank, 2);
+  EXPECT_EQ(standings({&a, &c})[1].rank, 1) << "its scenes do not show that it is worse than A";
+  EXPECT_EQ(all[3].entry, &c);
+  EXPECT_EQ(all[3].rank, 2) << "a rank never decreases downwards";
 }
 
 // Success 1 in the control and at level 1, 0.5 at 2, 0 at 3 and 4, whatever the axis; nowhere else.
@@ -525,10 +565,10 @@ TEST(Standings, AnswersAsSubmittedHaveNoRankAndInfluenceNone) {
   EXPECT_EQ(why_not_ranked(entries[0]), "not yet replayed");
   for (const Json& line : entries[0].verifications) entries[0].vouched.insert(line_hash(line));
   const std::vector<Standing> all = ranked();
-  EXPECT_EQ(all[0].rank, 1);
-  EXPECT_EQ(all[0].entry, &entries[1]) << "those that are ranked come first";
-  EXPECT_EQ(all[1].not_ranked, as_submitted);
-  EXPECT_EQ(tier_and_marks(all[1]), "replayed; answers as submitted");
+  EXPECT_EQ(all[1].rank, 1);
+  EXPECT_EQ(all[1].entry, &entries[1]) << "by success";
+  EXPECT_EQ(all[0].not_ranked, as_submitted);
+  EXPECT_EQ(tier_and_marks(all[0]), "replayed; answers as submitted");
   entries[0].identity.row.kind = "reference";
   EXPECT_FALSE(entries[0].has_answers_as_submitted()) << "it asks nobody";
 }

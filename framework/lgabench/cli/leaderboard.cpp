@@ -17,6 +17,7 @@
 #include <lgabench/leaderboard/check.hpp>
 #include <lgabench/leaderboard/pages.hpp>
 #include <lgabench/leaderboard/recompute.hpp>
+#include <lgabench/leaderboard/scenes.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 
 namespace lgabench::cli {
@@ -117,6 +118,31 @@ int verify(LeaderboardArguments a) {
   return differs ? regression : unverified > 0 ? usage : ok;
 }
 
+// Pictures of each entry that has none, the cheapest first. Entries that cannot be played stop no other.
+int scenes(LeaderboardArguments a) {
+  const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
+  a.verify.pool.jobs = a.jobs != 0 ? a.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  std::vector<leaderboard::Entry> entries = leaderboard::read_entries(a.board);
+  std::sort(entries.begin(), entries.end(), [](const leaderboard::Entry& one, const leaderboard::Entry& other) {
+    return leaderboard::seconds_of_scenes(one) < leaderboard::seconds_of_scenes(other);
+  });
+  leaderboard::BoardScenes known = leaderboard::read_scenes(a.board, entries);
+  const std::string only = a.what.empty() ? "" : leaderboard::find_entry(a.board, a.what).string();
+  std::size_t without = 0;
+  for (const leaderboard::Entry& entry : entries) {
+    if (only.empty() ? known.count(entry.id()) > 0 : only != entry.place().string()) continue;
+    try {
+      const auto pictures = leaderboard::add_scenes(a.board, entry, catalogue, a.verify, known);
+      if (!pictures) return interrupted;
+      for (const fs::path& picture : *pictures) to_stdout("{}\n", picture.string());
+    } catch (const Error& e) {
+      to_stderr("no scenes: {}: {}\n", entry.place().string(), one_line(e.what()));
+      ++without;
+    }
+  }
+  return without > 0 ? usage : ok;
+}
+
 int withdraw(const LeaderboardArguments& a) {
   if (a.what.empty() || a.reason.empty()) throw InputError("leaderboard withdraw: expected ENTRY, and --reason WORDS");
   leaderboard::withdraw(a.board, a.what, a.reason, fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))));
@@ -165,13 +191,14 @@ int build(const LeaderboardArguments& a) {
 void add_leaderboard(CLI::App& app, int& exit) {
   auto a = std::make_shared<LeaderboardArguments>();
   CLI::App* verb = app.add_subcommand("leaderboard", "Add results to a leaderboard, check it, and make its pages");
-  const Words actions{"add", "verify", "vouch", "build", "check", "withdraw"};
-  verb->add_option("ACTION", a->action, "add, verify, vouch, build, check or withdraw")
+  const Words actions{"add", "verify", "vouch", "build", "check", "withdraw", "scenes"};
+  verb->add_option("ACTION", a->action, "add, verify, vouch, build, check, withdraw or scenes")
       ->required()
       ->check(one_of("action", actions));
   verb->add_option(
       "WHAT", a->what,
-      "add: a run's directory; verify, vouch, withdraw: an entry's directory or id (verify without one: all entries)");
+      "add: a run's directory; verify, vouch, withdraw: an entry's directory or id (verify without one: all entries); "
+      "scenes: likewise (without one: all entries that have no pictures)");
   verb->add_option("LINE", a->line, "vouch: the number of a line in verifications.jsonl, or `withdrawn`");
   verb->add_option("--board", a->board, "The leaderboard's directory")->capture_default_str();
   verb->add_option("--entry", a->about,
@@ -183,9 +210,9 @@ void add_leaderboard(CLI::App& app, int& exit) {
           ->capture_default_str();
   verb->add_flag("--fresh", a->verify.fresh, "verify: play on new test scenes, and compare success")->excludes(cells);
   verb->add_option("--by", a->verify.by, "verify: your name, as the one who verifies");
-  verb->add_option("--jobs", a->jobs, "verify: cells to compute at once (default: one per core)")
+  verb->add_option("--jobs", a->jobs, "verify, scenes: cells to compute at once (default: one per core)")
       ->check(CLI::Range(1, 4096));
-  verb->add_option("--timeout", a->verify.pool.timeout_s, "verify: seconds after which a cell is stopped")
+  verb->add_option("--timeout", a->verify.pool.timeout_s, "verify, scenes: seconds after which a cell is stopped")
       ->check(within(1, 1e7))
       ->capture_default_str();
   verb->add_option("--methods", a->methods, "verify: methods in Python, as FILE.py:Class")->delimiter(',');
@@ -202,9 +229,11 @@ void add_leaderboard(CLI::App& app, int& exit) {
   verb->add_option("--archive", a->archive,
                    "build: pack the board into an archive once it is checked, with license and citation");
   verb->add_option("--reason", a->reason, "withdraw: the reason");
-  arrange(
-      *verb, "",
-      {{"ACTION", "add|verify|vouch|build|check|withdraw"}, {"WHAT", "WHAT"}, {"LINE", "LINE"}, {"--board", "DIR"}});
+  arrange(*verb, "",
+          {{"ACTION", "add|verify|vouch|build|check|withdraw|scenes"},
+           {"WHAT", "WHAT"},
+           {"LINE", "LINE"},
+           {"--board", "DIR"}});
   arrange(*verb, "add and withdraw", {{"--entry", "META.json"}, {"--rows", "ROW,..."}, {"--reason", "WORDS"}});
   arrange(*verb, "verify",
           {{"--by", "NAME"},
@@ -231,12 +260,13 @@ void add_leaderboard(CLI::App& app, int& exit) {
       throw InputError(fmt::format("leaderboard {}: \"{}\" is a word too many", a->action, a->line));
     a->verify.program = app.version();
     if (a->action != "add") expect_board(a->board);
-    exit = a->action == "verify"  ? verify(*a)
-           : a->action == "add"   ? add(*a)
-           : a->action == "vouch" ? vouch(*a)
-           : a->action == "build" ? build(*a)
-           : a->action == "check" ? check(*a)
-                                  : withdraw(*a);
+    exit = a->action == "verify"   ? verify(*a)
+           : a->action == "add"    ? add(*a)
+           : a->action == "vouch"  ? vouch(*a)
+           : a->action == "build"  ? build(*a)
+           : a->action == "check"  ? check(*a)
+           : a->action == "scenes" ? scenes(*a)
+                                   : withdraw(*a);
   });
 }
 

@@ -56,6 +56,7 @@ void add_select(CLI::App& app, int& exit);
 void add_demos(CLI::App& app, int& exit);
 void add_render(CLI::App& app, int& exit);
 void add_pictures(CLI::App& app, int& exit);
+void add_strips(CLI::App& app, int& exit);
 void add_oracle(CLI::App& app, int& exit);
 void add_replay(CLI::App& app, int& exit);
 void add_act(CLI::App& app, int& exit);

@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
   cli::add_demos(app, exit);
   cli::add_render(app, exit);
   cli::add_pictures(app, exit);
+  cli::add_strips(app, exit);
   cli::add_oracle(app, exit);
   cli::add_check_scenario(app, exit);
   cli::add_replay(app, exit);

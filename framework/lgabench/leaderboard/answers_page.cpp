@@ -9,6 +9,7 @@
 
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/leaderboard/answer_score.hpp>
+#include <lgabench/leaderboard/titles.hpp>
 #include <lgabench/report/statistics.hpp>
 
 namespace lgabench::leaderboard {
@@ -27,12 +28,13 @@ struct Scored {
 
 std::vector<Scored> scored_of(const NamedTable& table) {
   std::vector<Scored> all;
-  const auto add = [&all](const std::vector<Standing>& standings, const std::vector<std::string>& labels) {
+  const auto add = [&all](const std::vector<Standing>& standings, const std::vector<std::string>& labels,
+                          const std::vector<std::string>& policies) {
     for (std::size_t i = 0; i < standings.size(); ++i)
-      if (!standings[i].entry->score.is_null()) all.push_back({standings[i].entry, labels[i]});
+      if (!standings[i].entry->score.is_null()) all.push_back({standings[i].entry, labels[i] + ", " + policies[i]});
   };
-  add(table.standings, table.labels);
-  add(table.waiting, table.waiting_labels);
+  add(table.standings, table.labels, table.policies);
+  add(table.waiting, table.waiting_labels, table.waiting_policies);
   std::stable_sort(all.begin(), all.end(), [](const Scored& a, const Scored& b) {
     return scenes_exact(a.entry->score) > scenes_exact(b.entry->score);
   });
@@ -50,7 +52,7 @@ Grid models_grid(const NamedTable& table, const std::vector<Scored>& all) {
       if (item.key() != "all") groups.insert(item.key());
   Grid grid;
   grid.name = table.setting.name() + "_answers";
-  grid.caption = title_of(table.setting) + ", share of the scenes in which exactly what is meant is kept";
+  grid.caption = title_of(table) + ", share of the scenes in which exactly what is meant is kept";
   grid.heads = {"entry", "model", "asked"};
   for (const std::string& group : groups) grid.heads.emplace_back(group);
   for (const char* head : {"all", "sets exact", "questions", "tokens", "played on", "known"})
@@ -92,6 +94,7 @@ std::optional<Grid> wrong_grid(const NamedTable& table, const std::vector<Scored
   Grid grid;
   grid.name = table.setting.name() + "_wrong";
   grid.caption = "What was wrong";
+  const Titles titles(table.setting.suite);
   grid.heads = {"entry", "asked", "scenario", "scenes exact", "wrong in the others"};
   grid.align = "lllrl";
   for (const Scored& one : all) {
@@ -100,7 +103,7 @@ std::optional<Grid> wrong_grid(const NamedTable& table, const std::vector<Scored
     for (const auto& [id, wrong] : score.at("wrong").items())
       grid.rows.push_back(
           {{},
-           {Span(one.label), Span(score.at("asked").get<std::string>()), Span(id),
+           {Span(one.label), Span(score.at("asked").get<std::string>()), Span(titles.scenario(id)),
             Span::number(fmt::format("{} of {}", wrong.at("exact_scenes").get<int>(), wrong.at("scenes").get<int>())),
             Span(in_words(wrong))},
            false});

@@ -12,6 +12,7 @@
 #include <lgabench/leaderboard/pages.hpp>
 #include <lgabench/leaderboard/recompute.hpp>
 #include <lgabench/leaderboard/revision.hpp>
+#include <lgabench/leaderboard/scenes.hpp>
 
 namespace lgabench::leaderboard {
 namespace {
@@ -149,7 +150,7 @@ void expect_frames(const fs::path& board, const std::vector<Entry>& entries, con
 // Nothing lies beside what a board has: git, a web server or a browser obeys some names.
 void expect_nothing_else(const fs::path& board, const std::vector<Entry>& entries, Checked& checked) {
   std::set<std::string> files{"README.md", "index.html", "leaderboard.csv"};
-  const std::set<std::string> directories{"entries", "answers", adding_directory};
+  const std::set<std::string> directories{"entries", "answers", scenes_directory, adding_directory};
   files.insert(maintainers_files.begin(), maintainers_files.end());
   for (const Entry& entry : entries) files.insert(entry.setting.suite + ".html");
   const auto expect = [&](const fs::directory_entry& item, bool known) {
@@ -222,7 +223,11 @@ Checked check(const fs::path& board, const CheckOptions& options) {
       }
     }
     expect_vouched(entries, vouched, checked);
-    if (entries.size() == checked.entries) expect_no_other_answers(board, entries, checked);
+    if (entries.size() == checked.entries) {
+      expect_no_other_answers(board, entries, checked);
+      for (std::string& problem : problems_of_scenes(board, read_scenes(board, entries)))
+        checked.problems.push_back(std::move(problem));
+    }
   } catch (const InputError& e) {  // something else than directories, or vouched.json is not as it should be
     checked.problems.emplace_back(e.what());
   }

@@ -7,6 +7,7 @@
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/leaderboard/labels.hpp>
+#include <lgabench/leaderboard/scenes.hpp>
 #include <lgabench/leaderboard/tracks.hpp>
 #include <lgabench/leaderboard/vouched.hpp>
 #include <lgabench/plugin/loader.hpp>
@@ -19,7 +20,8 @@ struct Checked {
 };
 
 /// Files of the board that nobody else's request may change.
-inline constexpr std::array maintainers_files{vouched_file, vouched_entries_file, labels_file, tracks_file};
+inline constexpr std::array maintainers_files{vouched_file, vouched_entries_file, labels_file, tracks_file,
+                                              scenes_file};
 
 struct CheckOptions {
   std::string against;      // a revision (files_at()) whose outcomes must not have changed; "": none
@@ -29,12 +31,12 @@ struct CheckOptions {
 };
 
 /// Schema, identity and completeness of every entry; that entries of one table played the same scenes; that cassettes
-/// are there; that lines and entries that are vouched for are those that were; that a preset and engine that an entry
-/// names are the installed ones, unless it was replayed; that the pages and the tables in documents are those of the
-/// entries; that nothing else lies in the board; and, with a revision, that the directories of its entries differ by
-/// appended verifications, evidence and a withdrawal at most, and the maintainers' files not at all, and that pages are
-/// around their tables as they were or as this build writes them. Keeps on after a problem. @throws InputError as
-/// files_at().
+/// are there, and pictures of scenes those that are listed; that lines and entries that are vouched for are those that
+/// were; that a preset and engine that an entry names are the installed ones, unless it was replayed; that the pages
+/// and the tables in documents are those of the entries; that nothing else lies in the board; and, with a revision,
+/// that the directories of its entries differ by appended verifications, evidence and a withdrawal at most, and the
+/// maintainers' files not at all, and that pages are around their tables as they were or as this build writes them.
+/// Keeps on after a problem. @throws InputError as files_at().
 Checked check(const fs::path& board, const CheckOptions& options = {});
 
 }  // namespace lgabench::leaderboard

@@ -1,11 +1,23 @@
 #include <lgabench/leaderboard/labels.hpp>
 
 #include <algorithm>
+#include <set>
 
+#include <lgabench/leaderboard/standings.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/report/names.hpp>
 
 namespace lgabench::leaderboard {
+
+namespace {
+
+// Of "option=value"; that itself where the board has none.
+std::string words_for(const Labels& labels, const std::string& said) {
+  const auto words = labels.values.find(said);
+  return words == labels.values.end() ? said : words->second;
+}
+
+}  // namespace
 
 Labels read_labels(const fs::path& board) {
   Labels labels;
@@ -39,11 +51,42 @@ std::string label_of(const Labels& labels, const Entry& entry, const std::vector
   std::string text = best ? best->label : entry.about.value("label", report::display_name(row.own_name()));
   for (const std::string& option : telling) {
     if (!row.options.contains(option) || (best && best->options.contains(option))) continue;
-    const std::string said = option + "=" + option_text(row.options.at(option));
-    const auto words = labels.values.find(said);
-    text += ", " + (words == labels.values.end() ? said : words->second);
+    if (option == "policy" || option == "network") continue;
+    const std::string words = words_for(labels, option + "=" + option_text(row.options.at(option)));
+    text += (words.empty() ? "" : ", ") + words;
   }
   return text;
+}
+
+std::string policy_label(const Labels& labels, const Entry& entry) {
+  const Competitor& row = entry.identity.row;
+  const std::string policy = policy_of(entry);
+  if (row.is_reference()) return "";
+  if (policy.empty()) return "its own";
+  std::string text = words_for(labels, "policy=" + policy);
+  const Json network = (row.acts ? row.acts->options : row.options).value("network", Json());
+  if (policy == "regression" && network.is_string())
+    if (const std::string words = words_for(labels, "network=" + network.get<std::string>()); !words.empty())
+      text += ", " + words;
+  return text;
+}
+
+std::string answers_label(const Entry& entry) {
+  if (entry.identity.row.is_reference()) return "";
+  if (entry.has_answers_as_submitted()) return as_submitted;
+  std::set<std::string> all;
+  for (const auto& scenario : entry.phi.items())
+    for (const Json& list : scenario.value())
+      for (const Json& command : list) all.insert(command.at("selection").at("provenance"));
+  for (const auto& [provenance, words] : {std::pair("human", "people"),
+                                          {"simulated_edit", "a simulated person"},
+                                          {"truth", "the truth"},
+                                          {"live", "a model"},
+                                          {"cassette", "a model"},
+                                          {"recorded", "a model, recorded"},
+                                          {"rule", "nobody asked"}})
+    if (all.count(provenance) > 0) return words;
+  return "";
 }
 
 }  // namespace lgabench::leaderboard

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <array>
 
-#include <lgabench/leaderboard/suite_page.hpp>
+#include <lgabench/leaderboard/overview.hpp>
+#include <lgabench/leaderboard/titles.hpp>
 #include <lgabench/report/about_suite.hpp>
 #include <lgabench/report/names.hpp>
 #include <lgabench/report/writers.hpp>
@@ -25,83 +26,51 @@ using report::reading;
 using report::Section;
 using report::Span;
 
-using Suites = std::vector<std::pair<std::string, std::vector<NamedTable>>>;
-constexpr std::size_t first_rows = 10, all_rows = 1'000'000;
-
-bool is_reference(const Standing& s) { return s.entry->identity.row.is_reference(); }
-
-// The reference rows of a table and at most so many entries; `board` is where its links find the board.
-Grid short_grid(const NamedTable& table, std::size_t most, const fs::path& board) {
+// A ranking's rows; `board` is where its links find the board.
+Grid short_grid(const NamedTable& table, const fs::path& board) {
   Grid grid;
   grid.name = table.setting.name();
-  grid.caption = title_of(table.setting);
-  grid.heads = {"rank", "entry", "success", "tier", "by", "id"};
-  grid.align = "rlrlll";
-  std::size_t entries = 0;
+  grid.caption = title_of(table);
+  grid.heads = {"rank", "method", "policy", "success", "known", "by", "id"};
+  grid.align = "rllrlll";
   for (std::size_t i = 0; i < table.standings.size(); ++i) {
     const Standing& s = table.standings[i];
-    if (most != all_rows && !table.best[i]) continue;
-    if (!is_reference(s) && ++entries > most) continue;
     report::Spans success{Span::number(score_text(s))};
     if (s.below_random) success.push_back(below_random_mark());
-    grid.rows.push_back({{},
-                         {Span::number(rank_text(s)), Span(table.labels[i]), success, Span(tier_and_marks(s)),
-                          Span(s.entry->about.at("by").get<std::string>()),
-                          Span::link(s.entry->id(), (board / s.entry->place() / "entry.json").string())},
-                         is_reference(s)});
+    grid.rows.push_back(
+        {{},
+         {rank_span(s), Span(table.labels[i]), Span(table.policies[i]), success, Span(tier_and_marks(s)),
+          Span(s.entry->about.at("by").get<std::string>()), id_span(*s.entry, board)},
+         s.entry->identity.row.is_reference()});
   }
   return grid;
 }
 
-void add_table(Section& section, const NamedTable& table, std::size_t most, const fs::path& board = "") {
-  section.add<Paragraph>(reading, {{what_was_played(table.setting)}});
-  if (!table.standings.empty()) section.add<Grid>(reading, short_grid(table, most, board));
+void add_table(Section& section, const NamedTable& table, const fs::path& board = "") {
+  section.add<Paragraph>(reading, {{what_was_played(table.setting) + " " + words_of(table.ranking)}});
+  if (!table.standings.empty()) section.add<Grid>(reading, short_grid(table, board));
   if (auto note = below_random_note(table.standings)) section.add<Paragraph>(reading, std::move(*note));
   if (auto waiting = waiting_grid(table, board)) section.add<Grid>(reading, std::move(*waiting));
 }
 
-Document index(const Suites& suites, std::size_t most) {
+// README.md: the first page's words, and every ranking.
+Document readme(const Suites& suites) {
   Document document;
-  document.title = "lgabench leaderboard";
-  document.headline = {
-      "lgabench asks which features of a scene matter for a command, and what leaving out the rest is worth to a "
-      "policy "
-      "that imitates a few demonstrations. These tables say how often such policies succeed in scenes that were not "
-      "demonstrated. Every number is computed from the episodes in entries/."};
-  Section enter{"enter", "How to enter"};
-  enter.add<Paragraph>(
-      reading,
-      {{"Run a suite's preset ", Span("leaderboard", report::Emphasis::code),
-        " with your method, add the result, and send it as a pull request: ",
-        Span::link("in ten minutes, with a real entry", "../../docs/entering-the-leaderboard.md"), ". See ",
-        Span::link("the rules", "../../docs/leaderboard.md"), " for what is accepted and how it is checked, and ",
-        Span::link("the suites", "../../docs/suites.md"), " for what is played."}});
-  document.sections.push_back(std::move(enter));
+  Document first = overview({});
+  document.title = first.title;
+  document.headline = first.headline;
+  document.sections.push_back(how_to_enter());
   for (const auto& [suite, tables] : suites) {
-    Section section{"suite-" + suite, suite};
+    Section section{"suite-" + suite, Titles(suite).suite()};
     report::Spans introduction;
     if (const std::string question = report::about_suite(suite).question; !question.empty())
       introduction.emplace_back(question + " ");
-    introduction.push_back(Span::link("Sortable table, scenarios, episodes of " + suite, suite + ".html"));
+    introduction.push_back(Span::link("Sortable tables, scenarios, episodes", suite + ".html"));
     section.add<Paragraph>(reading, {std::move(introduction)});
     for (const NamedTable& table : tables) {
-      if (tables.size() > 1) section.add<Heading>(reading, {title_of(table.setting)});
-      add_table(section, table, most);
-      std::size_t entries = 0, methods = 0;
-      for (std::size_t i = 0; i < table.standings.size(); ++i) {
-        if (is_reference(table.standings[i])) continue;
-        ++entries;
-        methods += table.best[i];
-      }
-      if (const std::size_t shown = std::min(most, methods); most != all_rows && entries > shown)
-        section.add<Paragraph>(reading, {{fmt::format("{} of {} entries, the best of each method; ", shown, entries),
-                                          Span::link("all of them", suite + ".html")}});
+      if (tables.size() > 1) section.add<Heading>(reading, {capital(to_string(table.ranking))});
+      add_table(section, table);
     }
-    document.sections.push_back(std::move(section));
-  }
-  if (suites.empty()) {
-    Section section{"none", "No entry yet"};
-    section.add<Paragraph>(reading, {{"docs/leaderboard.md says how to submit one."}});
     document.sections.push_back(std::move(section));
   }
   document.sections.push_back(words_of_the_board());
@@ -111,11 +80,11 @@ Document index(const Suites& suites, std::size_t most) {
 std::string number(double value) { return fmt::format("{:.6g}", value); }
 
 std::string csv_of(const Suites& suites) {
-  std::string text = csv_line({"suite",          "preset",       "preset_hash", "scene_seed", "id",
-                               "method",         "name",         "version",     "engine",     "answers",
-                               "demonstrations", "rank",         "success",     "low",        "high",
-                               "episodes",       "failed_cells", "precision",   "recall",     "lm_queries",
-                               "lm_tokens",      "learn_s",      "tier",        "not_ranked", "by"});
+  std::string text =
+      csv_line({"suite",     "preset",  "preset_hash", "scene_seed",     "id",        "method", "name",
+                "version",   "engine",  "answers",     "demonstrations", "ranking",   "rank",   "success",
+                "low",       "high",    "episodes",    "failed_cells",   "precision", "recall", "lm_queries",
+                "lm_tokens", "learn_s", "tier",        "not_ranked",     "by"});
   for (const auto& suite : suites)
     for (const NamedTable& table : suite.second)
       for (std::size_t i = 0; i < table.standings.size(); ++i) {
@@ -134,6 +103,7 @@ std::string csv_of(const Suites& suites) {
                             identity.engine,
                             to_string(identity.answers),
                             n,
+                            to_string(table.ranking),
                             when_all(s.rank ? std::to_string(*s.rank) : ""),
                             number(success),
                             when_all(number(s.interval.low)),
@@ -169,7 +139,7 @@ std::string with_tables(const fs::path& file, const fs::path& board, const Suite
     Section section;
     for (const auto& suite : suites)
       for (const NamedTable& table : suite.second)
-        if (table.setting.name() == name) add_table(section, table, all_rows, board);
+        if (table.setting.name() == name) add_table(section, table, board);
     if (section.blocks.empty()) section.add<Paragraph>(reading, {{fmt::format("No entry of {} yet.", name)}});
     out += text.substr(at, inside - at) + '\n' + markdown(section) + '\n';
     at = end;
@@ -189,11 +159,15 @@ Suites suites_of(const std::vector<Entry>& entries, const Labels& labels, const 
   std::map<std::pair<std::ptrdiff_t, std::string>, std::vector<NamedTable>> by_place;
   for (const auto& table : tables(entries)) {
     const std::string& suite = table.front()->setting.suite;
-    by_place[{std::find(order.begin(), order.end(), suite) - order.begin(), suite}].push_back(
-        named_table(table, labels, tracks));
+    for (NamedTable& ranking : named_tables(table, labels, tracks))
+      by_place[{std::find(order.begin(), order.end(), suite) - order.begin(), suite}].push_back(std::move(ranking));
   }
   Suites suites;
-  for (auto& [place, named] : by_place) suites.emplace_back(place.second, std::move(named));
+  for (auto& [place, named] : by_place) {
+    std::stable_sort(named.begin(), named.end(),
+                     [](const NamedTable& one, const NamedTable& other) { return one.ranking < other.ranking; });
+    suites.emplace_back(place.second, std::move(named));
+  }
   std::stable_partition(suites.begin(), suites.end(), [](const auto& suite) {
     return std::any_of(suite.second.begin(), suite.second.end(), ranks_entries);
   });
@@ -207,12 +181,14 @@ std::map<fs::path, std::string> made_files(const fs::path& board, const std::vec
   const Tracks tracks = read_tracks(board);
   for (const Entry& entry : entries) expect_arms(board, tracks, entry.setting);
   const Suites suites = suites_of(entries, read_labels(board), tracks);
+  const BoardScenes scenes = read_scenes(board, entries);
   std::map<fs::path, std::string> files;
-  files[board / "README.md"] = markdown(index(suites, all_rows));
-  files[board / "index.html"] = html(index(suites, first_rows), Json::object(), "leaderboard.js");
+  files[board / "README.md"] = markdown(readme(suites));
+  files[board / "index.html"] = html(overview(suites), overview_data(suites), "leaderboard.js");
   files[board / "leaderboard.csv"] = csv_of(suites);
   for (const auto& [suite, tables] : suites)
-    files[board / (suite + ".html")] = html(suite_document(suite, tables), suite_data(tables), "leaderboard.js");
+    files[board / (suite + ".html")] =
+        html(suite_document(suite, tables), suite_data(tables, scenes), "leaderboard.js");
   for (const fs::path& document : documents)
     files[document] = with_tables(document, fs::relative(board, fs::absolute(document).parent_path()), suites);
   return files;
@@ -224,6 +200,7 @@ std::vector<fs::path> build(const fs::path& board, const std::vector<fs::path>& 
   const std::map<fs::path, std::string> files = made_files(board, entries, documents);
   std::vector<fs::path> paths;
   for (const auto& [path, bytes] : files) {
+    if (fs::exists(path) && read_file(path) == bytes) continue;
     write_file(path, bytes);
     paths.push_back(path);
   }

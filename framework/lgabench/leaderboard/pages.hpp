@@ -16,7 +16,7 @@ std::map<fs::path, std::string> made_files(const fs::path& board, const std::vec
                                            const std::vector<fs::path>& documents);
 
 /// Reads the entries and writes these files; pages of suites that are gone and answers that no entry names are
-/// removed, and what a killed writer left. Returns their paths.
+/// removed, and what a killed writer left. Returns the paths of those that changed.
 std::vector<fs::path> build(const fs::path& board, const std::vector<fs::path>& documents = {});
 
 }  // namespace lgabench::leaderboard

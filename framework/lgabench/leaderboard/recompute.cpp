@@ -168,6 +168,18 @@ Installed installed_as(const Entry& entry, const Catalogue& catalogue) {
   return installed;
 }
 
+std::optional<Recomputed> played_again(const fs::path& board, const Entry& entry,
+                                       const std::vector<std::size_t>& places, int episodes, const Catalogue& catalogue,
+                                       const VerifyOptions& options) {
+  expect_method(entry.identity.row, catalogue);
+  const std::vector<Cell> all =
+      cells_of_row(installed_as(entry, catalogue), entry.identity.row, entry.identity.engine, entry.identity.answers);
+  std::vector<Cell> cells;
+  for (const std::size_t i : places) cells.push_back(all[i]);
+  for (Cell& cell : cells) cell.episodes = std::min(cell.episodes, episodes);
+  return recompute(plan_of(board, entry, std::move(cells), options), catalogue);
+}
+
 std::string new_nonce() {
   std::random_device random;
   std::string nonce;

@@ -2,8 +2,9 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
-#include <lgabench/harness/run_suite.hpp>
+#include <lgabench/harness/recompute.hpp>
 #include <lgabench/leaderboard/entry.hpp>
 
 namespace lgabench::leaderboard {
@@ -18,6 +19,13 @@ struct VerifyOptions {
 /// The preset that the entry was played in, as it is installed. @throws InputError where that is another, or the engine
 /// has another version; PluginError where there is no such engine.
 Installed installed_as(const Entry& entry, const Catalogue& catalogue);
+
+/// The entry's cells of these places, played here with the first `episodes` scenes of each arm; with all of them where
+/// there are fewer. Of a method that is not the entry's, or has other options, none is played. None where it was
+/// interrupted. @throws InputError and PluginError as verification().
+std::optional<Recomputed> played_again(const fs::path& board, const Entry& entry,
+                                       const std::vector<std::size_t>& places, int episodes, const Catalogue& catalogue,
+                                       const VerifyOptions& options);
 
 /// 128 bits that nobody knew before, as 32 hexadecimal digits.
 std::string new_nonce();

@@ -117,12 +117,6 @@ void add_costs(Standing& standing) {
   standing.recall = mean_share(entry, &NameQuality::recall);
 }
 
-// Which learner, of the framework's; any other method's is the paper's network or takes its place.
-std::string policy_of(const Standing& standing) {
-  const Json policy = standing.entry->identity.row.options.value("policy", Json());
-  return policy.is_string() ? policy.get<std::string>() : "regression";
-}
-
 // Success over the arms of the abstraction track.
 std::optional<double> in_track(const Standing& standing, const Track& track) {
   std::vector<double> rates;
@@ -137,7 +131,7 @@ void add_gaps(std::vector<Standing>& all, const Track& track) {
   for (Standing& standing : all) {
     standing.in_track = in_track(standing, track);
     const Competitor& row = standing.entry->identity.row;
-    if (row.acts || policy_of(standing) != "heat_map") continue;
+    if (row.acts || policy_of(*standing.entry) != "heat_map") continue;
     if (row.id == "factorial" && row.options.value("input", Json()) == "object_mask") any = standing.in_track;
     if (row.id == "human") truth = standing.in_track;
   }
@@ -147,14 +141,13 @@ void add_gaps(std::vector<Standing>& all, const Track& track) {
 }
 
 // Each entry's rank among those that are ranked, given all entries' shared resamples.
-void add_ranks(std::vector<Standing>& all, const report::SharedResamples& resamples, bool across_policies) {
+void add_ranks(std::vector<Standing>& all, const report::SharedResamples& resamples) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!all[i].not_ranked.empty()) continue;
     std::vector<double> p;
     std::vector<bool> better;
     for (std::size_t j = 0; j < all.size(); ++j) {
       if (j == i || !all[j].not_ranked.empty()) continue;
-      if (!across_policies && policy_of(all[j]) != policy_of(all[i])) continue;
       p.push_back(resamples.p(i, j));
       better.push_back(all[j].score > all[i].score);
     }
@@ -184,11 +177,19 @@ std::string why_not_ranked(const Entry& entry) {
   return "";
 }
 
-std::vector<Standing> standings(const std::vector<const Entry*>& table, const Track& track) {
+std::string policy_of(const Entry& entry) {
+  const Competitor& row = entry.identity.row;
+  const Json policy = (row.acts ? row.acts->options : row.options).value("policy", Json());
+  return policy.is_string() ? policy.get<std::string>() : "";
+}
+
+std::vector<Standing> standings(const std::vector<const Entry*>& table, const Track& track, Ranking ranking) {
   std::vector<Standing> all;
   std::vector<std::vector<std::vector<std::vector<double>>>> rates;
   for (const Entry* entry : table) {
     if (entry->is_withdrawn() || !entry->was_replayed()) continue;
+    if (ranking == Ranking::papers_network && !entry->identity.row.is_reference() && policy_of(*entry) != "regression")
+      continue;
     Standing& standing = all.emplace_back();
     standing.entry = entry;
     standing.not_ranked = why_not_ranked(*entry);
@@ -203,14 +204,14 @@ std::vector<Standing> standings(const std::vector<const Entry*>& table, const Tr
   const report::SharedResamples resamples(rates, setting.shared_scenes(),
                                           fmt::format("leaderboard/{}/{}", hash(setting), setting.scene_seed));
   for (std::size_t i = 0; i < all.size(); ++i) all[i].interval = resamples.interval(i);
-  add_ranks(all, resamples, track.kind == Track::open);
+  add_ranks(all, resamples);
   if (track.kind == Track::abstraction) add_gaps(all, track);
-  const bool ranks = std::any_of(all.begin(), all.end(), [](const Standing& s) { return s.rank; });
   const auto is_reference = [](const Standing& s) { return s.entry->identity.row.is_reference(); };
-  const auto order = [&](const Standing& s) {
-    return std::tuple(ranks && !s.rank && !is_reference(s), -s.score, is_reference(s), s.entry->id());
-  };
+  const auto order = [&](const Standing& s) { return std::tuple(-s.score, is_reference(s), s.entry->id()); };
   std::sort(all.begin(), all.end(), [&](const Standing& a, const Standing& b) { return order(a) < order(b); });
+  int before = 1;
+  for (Standing& standing : all)
+    if (standing.rank) before = *standing.rank = std::max(*standing.rank, before);
   const auto random = std::find_if(all.begin(), all.end(),
                                    [](const Standing& s) { return s.entry->identity.row.id == "random_object"; });
   if (random != all.end())

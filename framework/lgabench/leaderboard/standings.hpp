@@ -18,7 +18,8 @@ struct Standing {
   const Entry* entry = nullptr;
   double score = 0;           // over all arms and numbers of demonstrations
   report::Interval interval;  // 95 %
-  std::optional<int> rank;    // 1 + the entries that are significantly better; none where it is not ranked
+  std::optional<int> rank;    // 1 + the entries that are significantly better, and no less than that of an entry with
+                              // more success; none where it is not ranked
   std::string not_ranked;     // why; "" where it is ranked
   bool below_random = false;  // its score is below that of the reference row random_object
   std::map<int, double> at;   // rate by number of demonstrations; 0 of a row that learns nothing
@@ -38,13 +39,17 @@ inline constexpr const char* as_submitted = "answers as submitted";
 /// Why an entry has no place among the ranked: "" for one that has.
 std::string why_not_ranked(const Entry& entry);
 
-/// The entries of one table by score, reference rows among them; where entries are ranked, methods that are not come
-/// last. Entries that were withdrawn, or not yet replayed, are left out.
-/// All share their resamples of test scenes and training seeds (report/bootstrap.hpp), which makes the paired test of
-/// every two of them as cheap as a difference. Holm's correction is over the comparisons of each entry. Outside of the
-/// open track only entries with one policy (the option of that name) are compared. Deterministic.
+/// The option of that name, of the method that acts: "regression" is the paper's network; "" where a method or a
+/// reference row has none.
+std::string policy_of(const Entry& entry);
+
+/// The entries of one ranking by score, among them those that have no rank. Entries that were withdrawn, or not yet
+/// replayed, are left out. All share their resamples of test scenes and training seeds (report/bootstrap.hpp), which
+/// makes the paired test of every two of them as cheap as a difference. Holm's correction is over the comparisons of
+/// each entry. Deterministic.
 /// @pre the entries have one setting
-std::vector<Standing> standings(const std::vector<const Entry*>& table, const Track& track = {});
+std::vector<Standing> standings(const std::vector<const Entry*>& table, const Track& track = {},
+                                Ranking ranking = Ranking::any_policy);
 
 /// The entries of one table whose files are all that is known of them: what they claim, without interval and costs.
 std::vector<Standing> not_yet_replayed(const std::vector<const Entry*>& table);

@@ -5,32 +5,52 @@
 #include <vector>
 
 #include <lgabench/leaderboard/labels.hpp>
+#include <lgabench/leaderboard/scenes.hpp>
 #include <lgabench/leaderboard/standings.hpp>
 #include <lgabench/report/document.hpp>
 
 namespace lgabench::leaderboard {
 
-/// One table with what its rows are called.
+/// One ranking of a preset, with what its rows are called.
 struct NamedTable {
   Setting setting;
   std::vector<Standing> standings;
-  std::vector<std::string> names;   // of each standing, as report/names.hpp takes them; no two alike
-  std::vector<std::string> labels;  // what readers are shown in place of the names; no two alike
-  std::vector<bool> best;           // of each standing, whether it is the first of its method
-  std::vector<Standing> waiting;    // not yet replayed
-  std::vector<std::string> waiting_labels;
+  std::vector<std::string> names;             // of each standing, as report/names.hpp takes them; no two alike
+  std::vector<std::string> labels, policies;  // what readers are shown in place of the names; no two pairs alike
+  std::vector<bool> best;                     // of each standing, whether it is the first of its method
+  std::vector<Standing> waiting;              // not yet replayed; of a preset's first ranking, like `withdrawn`
+  std::vector<std::string> waiting_labels, waiting_policies;
   int withdrawn = 0;
   Track track{};
-};
-NamedTable named_table(const std::vector<const Entry*>& table, const Labels& labels, const Tracks& tracks);
+  Ranking ranking = Ranking::any_policy;
 
-/// "q1, preset leaderboard"
-std::string title_of(const Setting& setting);
+  /// "LGA, heat map"
+  std::string full_name(std::size_t i) const;
+};
+/// Those of a preset's entries: the first, and each other in which some entry has a rank.
+std::vector<NamedTable> named_tables(const std::vector<const Entry*>& table, const Labels& labels,
+                                     const Tracks& tracks);
+
+/// "Fewer demonstrations?, any policy"
+std::string title_of(const NamedTable& table);
+/// Of an entry: the day when it was computed first, and that of its last verification that counts; "" without one.
+std::string computed_on(const Entry& entry);
+std::string replayed_on(const Entry& entry);
+/// Its id, which leads to its entry.json; `board` is where links find the board.
+report::Span id_span(const Entry& entry, const fs::path& board = "");
+/// Its commit or file, which leads to the repository where that has an address.
+report::Span source_span(const Entry& entry);
+/// With a capital.
+std::string capital(std::string text);
 /// "heart, 13 scenarios, ..." in a sentence.
 std::string what_was_played(const Setting& setting);
 /// "3", "–" where there is none.
 std::string rank_text(const Standing& standing);
-/// "0.516 [0.443, 0.582]"
+/// Likewise; a page says why there is none.
+report::Span rank_span(const Standing& standing);
+/// "0.516"; "[0.443, 0.582]"; both
+std::string score_text(double score);
+std::string interval_text(const Standing& standing);
 std::string score_text(const Standing& standing);
 /// § of an entry below the random visible object, and what it means; the line below a table that has it.
 report::Span below_random_mark();
@@ -48,7 +68,7 @@ std::optional<report::Grid> waiting_grid(const NamedTable& table, const fs::path
 
 /// A page for the tables of one suite.
 report::Document suite_document(const std::string& suite, const std::vector<NamedTable>& tables);
-/// What page/leaderboard.js shows (docs/formats).
-Json suite_data(const std::vector<NamedTable>& tables);
+/// What page/leaderboard.js shows.
+Json suite_data(const std::vector<NamedTable>& tables, const BoardScenes& scenes);
 
 }  // namespace lgabench::leaderboard

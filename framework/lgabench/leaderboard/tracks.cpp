@@ -44,15 +44,26 @@ Track track_of(const Tracks& tracks, const Setting& setting) {
   return found == tracks.end() ? Track() : found->second;
 }
 
-std::string words_of(const Track& track) {
-  if (track.kind == Track::abstraction)
-    return "Abstraction track: rows selected_by:METHOD differ in what is selected alone; the shipped policy learns and "
-           "acts. \"Where it decides\" is success over the arms that tracks.json names; \"gap "
-           "closed\" "
-           "the part of the distance there from the mask of any object to that of the truth. Answers to commands whose "
-           "truth is public prove nothing, so no row has a rank.";
-  if (track.kind == Track::open) return "Open track: all that acts is ranked together.";
-  return "Only rows with one policy are ranked against each other.";
+std::string to_string(Ranking ranking) {
+  return ranking == Ranking::any_policy       ? "any policy"
+         : ranking == Ranking::papers_network ? "paper's network"
+                                              : "answers only";
+}
+
+std::vector<Ranking> rankings_of(const Track& track) {
+  if (track.kind == Track::abstraction) return {Ranking::answers_only};
+  if (track.kind == Track::open) return {Ranking::any_policy};
+  return {Ranking::any_policy, Ranking::papers_network};
+}
+
+std::string words_of(Ranking ranking) {
+  if (ranking == Ranking::answers_only)
+    return "Answers only: rows differ in what is selected alone, and the shipped policy learns and acts. \"Where it "
+           "decides\" is success in the test scenes in which an abstraction decides; \"gap closed\" is the part of the "
+           "distance there from the mask of any object to the true mask. The truth of these commands is public, so "
+           "answers to them prove nothing, and no row has a rank.";
+  if (ranking == Ranking::papers_network) return "Paper's network: only rows that learn with it are ranked here.";
+  return "Any policy: all that acts is ranked together.";
 }
 
 }  // namespace lgabench::leaderboard

@@ -12,7 +12,7 @@ namespace lgabench::leaderboard {
 inline constexpr const char* tracks_file = "tracks.json";
 
 /// What competes in a table. abstraction: what is selected, while the shipped policy learns and acts; open: all that
-/// acts; reproduction, every preset that is in no track: methods with one policy among themselves.
+/// acts; reproduction, every preset that is in no track: likewise, and those with the paper's network by themselves.
 struct Track {
   enum Kind { reproduction, abstraction, open } kind = reproduction;
   std::vector<std::string> arms{};  // of the abstraction track: where an abstraction decides
@@ -26,10 +26,18 @@ Tracks read_tracks(const std::filesystem::path& board);
 /// @throws InputError with file and place for an arm of the setting's track that none of its scenarios has.
 void expect_arms(const std::filesystem::path& board, const Tracks& tracks, const Setting& setting);
 
+/// Rows that are ranked against each other, in a table of their own: all of a preset; those of them that learn as the
+/// paper does; those of the abstraction track, which differ in their answers alone.
+enum class Ranking { any_policy, papers_network, answers_only };
+/// "any policy", "paper's network", "answers only"
+std::string to_string(Ranking ranking);
+/// A preset's, the first of which has all of its rows.
+std::vector<Ranking> rankings_of(const Track& track);
+
 /// The setting's.
 Track track_of(const Tracks& tracks, const Setting& setting);
 
 /// What a page says of it.
-std::string words_of(const Track& track);
+std::string words_of(Ranking ranking);
 
 }  // namespace lgabench::leaderboard

@@ -155,6 +155,7 @@ struct Document {
   std::string question{};       // that the suite asks; "" where none is known
   std::vector<ArmLine> arms{};  // what the columns of arms are
   Spans setting{};              // what all rows share
+  std::string description{};    // a sentence for a link's preview; "": a page has none
 
   /// Every table that has files of its own, in order; every chart that has.
   std::vector<const Grid*> grids() const;

@@ -293,14 +293,14 @@ std::string html(const Document& document, const Json& data, const std::string& 
   }
   const auto first = std::find_if(document.sections.begin(), document.sections.end(),
                                   [](const Section& section) { return (section.in & on_page) != 0; });
-  const fs::path installed = data_directory() / "page";
-  std::string summary;  // for those to whom the page is sent
+  const fs::path installed = data_directory() / "page", style = installed / fs::path(script).replace_extension(".css");
+  std::string summary = document.description;  // for those to whom the page is sent
   for (const Span& span : document.headline) summary += span.text;
   return filled(read_file(installed / "page.html"),
                 {{"{{title}}", shown(document.title)},
                  {"{{summary}}", shown(summary.empty() ? document.question : summary)},
                  {"{{first}}", first == document.sections.end() ? "" : first->id},
-                 {"{{style}}", read_file(installed / "page.css")},
+                 {"{{style}}", read_file(installed / "page.css") + (fs::exists(style) ? read_file(style) : "")},
                  {"{{body}}", body},
                  {"{{data}}", embedded(data)},
                  {"{{script}}", read_file(installed / "page.js") + read_file(installed / script)}});

@@ -29,7 +29,8 @@ std::string csv_line(const std::vector<std::string>& values);
 std::string csv_text(const Json& value);
 
 /// One page with everything inside it, from the installed page/ (template, style sheet, what all pages do), and the
-/// `data` that page/SCRIPT shows. Scripts add interaction only. @throws InputError where page/ is missing.
+/// `data` that page/SCRIPT shows; a style sheet of the script's name adds to the common one. Scripts add interaction
+/// only. @throws InputError where page/ is missing.
 std::string html(const Document& document, const Json& data, const std::string& script = "episodes.js");
 /// Text as it may stand in an element or a quoted attribute.
 std::string escaped(const std::string& text);

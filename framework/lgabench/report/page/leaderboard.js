@@ -1,36 +1,89 @@
 
-// What a leaderboard's page does: rows are filtered, and a click on a number shows an entry's episodes.
+// What a leaderboard's pages do: rankings are tabs, rows are filtered, and a click on a number shows an entry's episodes.
 const many = 1000;  // a data-row is the entry's number times this, and its scenario's + 1
 
-// One filter for a page's rankings and their scenarios: rows that have all of the words. A word that some row has as it
-// stands is a whole one: "lga" does not find LGA-S. Without words, the best row of each method, or all.
-const boards = [...document.querySelectorAll("[id^=table] table.sortable")]
-  .filter((table) => !table.closest("section").id.includes("-") || table.closest("section").id.endsWith("-scenarios"));
+// One ranking at a time: its sections, and their names above.
+const sectionsOf = ({ sections: [id] }) => [...document.querySelectorAll("main section")]
+  .filter((section) => section.id === id || section.id.startsWith(`${id}-`) && !data.tabs.some((tab) => tab.sections[0] === section.id));
+const tabs = document.createElement("div");
+function choose(chosen) {
+  data.tabs.forEach((tab, i) => {
+    const button = tabs.children[i];
+    button.setAttribute("aria-selected", i === chosen);
+    button.tabIndex = i === chosen ? 0 : -1;
+    sectionsOf(tab).forEach((section) => {
+      section.hidden = i !== chosen;
+      document.querySelector(`#contents a[href="#${section.id}"]`).hidden = i !== chosen;
+    });
+  });
+  fit();
+}
+if (data.tabs.length > 1) {
+  tabs.className = "tabs";
+  tabs.setAttribute("role", "tablist");
+  tabs.ariaLabel = "Rankings";
+  data.tabs.forEach(({ title }, i) => {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.textContent = title;
+    button.setAttribute("role", "tab");
+    button.onclick = () => choose(i);
+    tabs.append(button);
+  });
+  tabs.onkeydown = ({ key }) => {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[key], now = [...tabs.children].indexOf(document.activeElement);
+    if (!step || now < 0) return;
+    const next = (now + step + data.tabs.length) % data.tabs.length;
+    choose(next);
+    tabs.children[next].focus();
+  };
+  sectionsOf(data.tabs[0])[0].before(tabs);
+  choose(0);
+}
+
+// One filter for a page's tables: rows that have all of the words, and the chosen policy and answers. A word that some
+// row has as it stands is a whole one: "lga" does not find LGA-S. Without words, the best row of each method, or all.
+const boards = [...document.querySelectorAll("[id^=table] table.sortable, [id^=overview] table")]
+  .filter((table) => !/^table.*-(answers|curves)$/.test(table.closest("section").id));
 if (boards.length) {
   const rows = boards.flatMap((table) => [...table.tBodies].flatMap((body) => [...body.rows]));
+  const heads = new Map(boards.map((table) => [table, [...table.querySelectorAll("thead th")].map((head) => head.textContent)]));
+  const valueOf = (row, head) => {
+    const at = heads.get(row.closest("table")).indexOf(head);
+    return at < 0 ? null : row.cells[at].textContent;
+  };
   const wordsOf = (row) => [...row.cells].map((cell) => cell.textContent).join(" ").toLowerCase().split(/[\s,;]+/);
   const wanted = document.createElement("input"), all = document.createElement("input"), label = document.createElement("label");
   wanted.type = "search";
   wanted.placeholder = wanted.ariaLabel = "Find rows: words of their names";
   all.type = "checkbox";
+  const choices = ["policy", "answers"].map((head) => {
+    const choice = document.createElement("select"), values = [...new Set(rows.map((row) => valueOf(row, head)))].filter((value) => value).sort();
+    choice.ariaLabel = head;
+    choice.innerHTML = `<option value="">${head}: all</option>` + values.map((value) => `<option>${escaped(value)}</option>`).join("");
+    choice.hidden = values.length < 2 || !boards.every((table) => heads.get(table).includes(head));
+    return [head, choice];
+  });
   const apply = () => {
     const said = wanted.value.toLowerCase().split(/\s+/).filter((word) => word);
     const known = rows.map((row) => [row, wordsOf(row)]);
     const whole = said.filter((word) => known.some(([, words]) => words.includes(word)));
+    const chosen = choices.filter(([, choice]) => choice.value);
     for (const [row, words] of known)
-      row.hidden = said.length
-        ? !said.every((word) => words.some((one) => whole.includes(word) ? one === word : one.includes(word)))
+      row.hidden = said.length || chosen.length
+        ? !said.every((word) => words.some((one) => whole.includes(word) ? one === word : one.includes(word))) ||
+          chosen.some(([head, choice]) => valueOf(row, head) !== choice.value)
         : row.classList.contains("more") && !all.checked;
   };
-  const more = boards.filter((table) => !table.closest("section").id.includes("-"))
-    .flatMap((table) => [...table.querySelectorAll("tr.more")]).length;
+  const more = [...document.querySelectorAll("[id^=table]:not([id*='-']) > .frame tr.more")].length;
   label.append(all, more ? ` all rows (${more} more), not only the best of each method` : "");
   label.hidden = !more;
   wanted.oninput = all.onchange = apply;
+  choices.forEach(([, choice]) => { choice.onchange = apply; });
   const box = document.createElement("p");
   box.className = "filter";
-  box.append(wanted, label);
-  boards[0].closest(".frame").before(box);
+  box.append(wanted, ...choices.map(([, choice]) => choice), label);
+  data.tabs.length > 1 ? tabs.after(box) : boards[0].closest(".frame").before(box);
   apply();
 }
 
@@ -61,19 +114,31 @@ function strip(won) {
     `aria-label="${count} of ${won.length} succeeded"><path d="${bars}"/></svg>`;
 }
 
+// The worst and the best scene of an entry, made again by a replay.
+function pictures(entry, setting) {
+  if (!entry.scenes.length) return `<p>No pictures yet: <code>lgabench leaderboard scenes ${entry.id}</code> makes two.</p>`;
+  const where = (one) => `${setting.scenarios.find((scenario) => scenario.id === one.scenario).title}, ` +
+    `${setting.titles[one.arm]}, ${one.n ? `${one.n} demonstrations, ` : ""}training seed ${one.seed}, scene ${one.index}`;
+  return `<div class="scenes">` + entry.scenes.map((one) =>
+    `<figure><img src="${escaped(one.picture)}" width="516" height="128" alt="${escaped(`${one.command} ${words(one.outcome)}`)}">` +
+    `<figcaption>${one.which === "best" ? "Where it does best" : "Where it does worst"}: <b>${escaped(words(one.outcome))}</b><br>` +
+    `${escaped(one.command)}<small>${escaped(where(one))}</small></figcaption></figure>`).join("") + "</div>" +
+    `<p><small>Left: before, the target outlined, the action from the ring to the line’s end. Right: after.</small></p>`;
+}
+
 function fill(body, entry, setting, scenario) {
   const won = successes(entry.successes), failed = new Map(entry.failed), lines = [];
   placesOf(setting, entry.learns).forEach((place, i) => {
     if (place.scenario !== scenario) return;
     const episodes = Array.from({ length: setting.episodes }, (_, k) => won(i * setting.episodes + k));
     const count = episodes.reduce((sum, one) => sum + one, 0);
-    lines.push(`<tr>${[place.layout, place.arm, place.n, place.seed].map((text) => `<td>${escaped(text)}</td>`).join("")}` +
+    lines.push(`<tr>${[words(place.layout), setting.titles[place.arm], place.n, place.seed].map((text) => `<td>${escaped(text)}</td>`).join("")}` +
       `<td>${count} of ${episodes.length}</td><td>${failed.has(place.cell) ? escaped("the method failed: " + failed.get(place.cell)) : strip(episodes)}</td></tr>`);
   });
   body.innerHTML = `<p>The same cells again, one of them with <code>--demos N --seeds S</code>` +
     `${entry.learns ? ", a method of your own with <code>--plugin-path</code>" : ""}:</p>` +
     `<pre>${escaped(`${entry.command} --scenarios ${scenario} --out again`)}</pre>` +
-    `<p>Why each episode failed, and everything else: <a href="${escaped(entry.place)}/cells.jsonl">cells.jsonl</a>, ` +
+    `<p>Then <code>again/report.html</code> shows all of their scenes. Why each episode failed, and everything else: <a href="${escaped(entry.place)}/cells.jsonl">cells.jsonl</a>, ` +
     `<a href="${escaped(entry.place)}/entry.json">entry.json</a>` +
     `${entry.kept_answers ? `, <a href="${escaped(entry.kept_answers)}">the answers</a>` : ""}.</p>` +
     `<div class="frame"><table><caption>Episodes in their order: a whole bar is a success</caption><thead><tr>` +
@@ -86,21 +151,27 @@ function show(row) {
   if (!entry) return;
   const setting = data.settings[entry.table], at = Math.max(0, row % many - 1);
   $("panel-title").textContent = entry.name;
-  const facts = [["options", entry.row], ["authors", entry.authors.join(", ")], ["license", entry.license], ["source", entry.source],
-    ["version", entry.version], ["answers", entry.answers], ["computed by", entry.program], ["processor", entry.processor],
-    ["tier", entry.tier], ["id", entry.id]];
+  const link = ({ text, url }) => url ? `<a href="${escaped(url)}">${escaped(text)}</a>` : `<code>${escaped(text)}</code>`;
+  const code = (text) => `<code>${escaped(text)}</code>`;
+  const facts = [["options", code(entry.row)], ["authors", escaped(entry.authors.join(", "))], ["license", escaped(entry.license)],
+    ["source", link(entry.source)], ["version", escaped(entry.version)], ["answers", code(entry.answers)],
+    ["computed", `${escaped(entry.computed)}, by ${code(entry.program)}`], ["replayed", escaped(entry.replayed)],
+    ["processor", escaped(entry.processor)], ["tier", escaped(entry.tier)], ["id", code(entry.id)]];
   const body = document.createElement("div"), about = document.createElement("dl"), choice = $("outcome");
-  about.innerHTML = facts.map(([name, value]) => `<dt>${name}</dt><dd>${escaped(value)}</dd>`).join("");
-  choice.innerHTML = setting.scenarios.map((one, i) => `<option${i === at ? " selected" : ""} value="${escaped(one.id)}">${escaped(words(one.id))}</option>`).join("");
+  about.innerHTML = facts.map(([name, value]) => `<dt>${name}</dt><dd>${value}</dd>`).join("");
+  choice.innerHTML = setting.scenarios.map((one, i) => `<option${i === at ? " selected" : ""} value="${escaped(one.id)}">${escaped(one.title)}</option>`).join("");
   choice.onchange = () => {
     fill(body, entry, setting, choice.value);
     fit(body);
   };
-  $("panel-body").replaceChildren(about, body);
+  const seen = document.createElement("div");
+  seen.innerHTML = pictures(entry, setting);
+  $("panel-body").replaceChildren(seen, about, body);
   for (const [id, step] of [["previous", -many], ["next", many]]) {
     $(id).disabled = !data.entries[Math.floor((row + step) / many)];
     $(id).onclick = () => show(row + step);
   }
+  if (data.tabs.length > 1) choose(entry.table);
   tip.hidden = true;
   if (!$("panel").open) $("panel").showModal();
   choice.onchange();
