@@ -120,7 +120,8 @@ int verify(LeaderboardArguments a) {
 
 // Pictures of each entry that has none, the cheapest first. Entries that cannot be played stop no other.
 int scenes(LeaderboardArguments a) {
-  const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
+  Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
+  for (const std::string& method : a.methods) with_python_method(method, a.python, catalogue);
   a.verify.pool.jobs = a.jobs != 0 ? a.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   std::vector<leaderboard::Entry> entries = leaderboard::read_entries(a.board);
   std::sort(entries.begin(), entries.end(), [](const leaderboard::Entry& one, const leaderboard::Entry& other) {
@@ -215,8 +216,9 @@ void add_leaderboard(CLI::App& app, int& exit) {
   verb->add_option("--timeout", a->verify.pool.timeout_s, "verify, scenes: seconds after which a cell is stopped")
       ->check(within(1, 1e7))
       ->capture_default_str();
-  verb->add_option("--methods", a->methods, "verify: methods in Python, as FILE.py:Class")->delimiter(',');
-  verb->add_option("--python", a->python, "verify: the interpreter for methods in Python")->capture_default_str();
+  verb->add_option("--methods", a->methods, "verify, scenes: methods in Python, as FILE.py:Class")->delimiter(',');
+  verb->add_option("--python", a->python, "verify, scenes: the interpreter for methods in Python")
+      ->capture_default_str();
   add_plugin_path(*verb, a->plugin_path);
   verb->add_option(
       "--against", a->against,
@@ -235,7 +237,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
            {"LINE", "LINE"},
            {"--board", "DIR"}});
   arrange(*verb, "add and withdraw", {{"--entry", "META.json"}, {"--rows", "ROW,..."}, {"--reason", "WORDS"}});
-  arrange(*verb, "verify",
+  arrange(*verb, "verify and scenes",
           {{"--by", "NAME"},
            {"--cells", "N"},
            {"--fresh", ""},
@@ -250,8 +252,10 @@ void add_leaderboard(CLI::App& app, int& exit) {
       "Example: lgabench leaderboard add runs/q1-leaderboard --entry me.json && lgabench leaderboard build\nadd "
       "refuses a run that is not the whole preset on the board's scenes, and lists what is missing.\nverify plays "
       "cells again, confined and without a cache, and records the outcome as a line; vouch makes that line count: "
-      "until then it is only a claim, and the entry has no rank. check only reads files.\nExit 1: refused, different, "
-      "or a problem. Exit 2: none of these, but verify could not verify some entry.");
+      "until then it is only a claim, and the entry has no rank. check only reads files. scenes plays two cells of an "
+      "entry again and draws "
+      "an episode of each.\nExit 1: refused, different, "
+      "or a problem. Exit 2: none of these, but some entry could not be verified or played.");
   verb->callback([a, actions, verb, &app, &exit] {
     expect_options_of(*verb, a->action, actions);
     if (!a->what.empty() && (a->action == "build" || a->action == "check"))

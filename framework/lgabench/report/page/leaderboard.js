@@ -52,7 +52,7 @@ if (boards.length) {
     const at = heads.get(row.closest("table")).indexOf(head);
     return at < 0 ? null : row.cells[at].textContent;
   };
-  const wordsOf = (row) => [...row.cells].map((cell) => cell.textContent).join(" ").toLowerCase().split(/[\s,;]+/);
+  const wordsOf = (row) => `${valueOf(row, "method")} ${valueOf(row, "policy")}`.toLowerCase().split(/[\s,;]+/);
   const wanted = document.createElement("input"), all = document.createElement("input"), label = document.createElement("label");
   wanted.type = "search";
   wanted.placeholder = wanted.ariaLabel = "Find rows: words of their names";
@@ -118,7 +118,7 @@ function strip(won) {
 function pictures(entry, setting) {
   if (!entry.scenes.length) return `<p>No pictures yet: <code>lgabench leaderboard scenes ${entry.id}</code> makes two.</p>`;
   const where = (one) => `${setting.scenarios.find((scenario) => scenario.id === one.scenario).title}, ` +
-    `${setting.titles[one.arm]}, ${one.n ? `${one.n} demonstrations, ` : ""}training seed ${one.seed}, scene ${one.index}`;
+    `${setting.titles[one.arm]}, ${one.n ? `${one.n} demonstration${one.n > 1 ? "s" : ""}, ` : ""}training seed ${one.seed}, scene ${one.index}`;
   return `<div class="scenes">` + entry.scenes.map((one) =>
     `<figure><img src="${escaped(one.picture)}" width="516" height="128" alt="${escaped(`${one.command} ${words(one.outcome)}`)}">` +
     `<figcaption>${one.which === "best" ? "Where it does best" : "Where it does worst"}: <b>${escaped(words(one.outcome))}</b><br>` +
