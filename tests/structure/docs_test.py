@@ -63,7 +63,7 @@ class Pages(unittest.TestCase):
         for row, (_, *heights) in zip(rows, lines):
             for shown, height in zip(table[row], heights):  # the axis' words stand 4 below its lines
                 self.assertAlmostEqual(shown, (bottom - 4 - float(height)) / (bottom - top), delta=.0055, msg=row)
-        for row, words in {"LGA": "LGA succeeds in 57 %", "GCBC-SEG": "GCBC-SEG in 16 %", "random visible object": "any object in 43 %"}.items():
+        for row, words in {"LGA": "LGA succeeds in 57 %", "GCBC-SEG": "GCBC-SEG in 16 %", "random visible object": "a random object 43 %"}.items():
             self.assertIn(words, self.readme)
             self.assertIn(f"{100 * table[row][-1]:.0f} %", words)
 

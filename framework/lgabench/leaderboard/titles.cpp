@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cctype>
 
-#include <lgabench/core/json.hpp>
-#include <lgabench/report/about_suite.hpp>
-
 namespace lgabench::leaderboard {
 namespace {
 
@@ -16,23 +13,11 @@ std::string spaced(std::string id) {
 
 }  // namespace
 
-Titles::Titles(const std::string& suite) : id_(suite), suite_(spaced(suite)) {
-  const fs::path file = report::installed_suite(suite);
-  if (file.empty()) return;
-  const Json about = read_json(file).value("about", Json::object());
-  suite_ = about.value("title", suite_);
-  const Json arms = about.value("arms", Json::object());
-  for (const auto& [arm, words] : arms.items())
-    arms_[arm] = words.is_object() ? words.value("title", spaced(arm)) : spaced(arm);
-}
+Titles::Titles(const std::string& suite) : id_(suite), about_(report::about_suite(suite)) {}
 
-std::string Titles::arm(const std::string& id) const {
-  std::string longest;
-  for (const auto& [arm, title] : arms_)
-    if ((id == arm || id.rfind(arm + "_", 0) == 0) && arm.size() > longest.size()) longest = arm;
-  if (longest.empty() || longest == id) return longest.empty() ? spaced(id) : arms_.at(id);
-  return arms_.at(longest) + ", " + spaced(id.substr(longest.size() + 1));
-}
+std::string Titles::suite() const { return about_.title == id_ ? spaced(id_) : about_.title; }
+
+std::string Titles::arm(const std::string& id) const { return spaced(about_.arm_title(id)); }
 
 std::string Titles::scenario(const std::string& id) const {
   if (id.rfind(id_ + "_", 0) == 0) return spaced(id.substr(id_.size() + 1));

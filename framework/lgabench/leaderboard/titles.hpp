@@ -1,7 +1,8 @@
 // What readers are shown in the place of a suite's ids.
 #pragma once
-#include <map>
 #include <string>
+
+#include <lgabench/report/about_suite.hpp>
 
 namespace lgabench::leaderboard {
 
@@ -10,15 +11,14 @@ class Titles {
  public:
   explicit Titles(const std::string& suite);
 
-  const std::string& suite() const { return suite_; }
-  /// That of "seen" and the rest of the id for "seen_members_1", an arm of a variant.
+  std::string suite() const;
   std::string arm(const std::string& id) const;
   /// Without the name of a suite before it.
   std::string scenario(const std::string& id) const;
 
  private:
-  std::string id_, suite_;
-  std::map<std::string, std::string> arms_;
+  std::string id_;
+  report::AboutSuite about_;
 };
 
 }  // namespace lgabench::leaderboard
