@@ -53,7 +53,7 @@ class BoardInABrowser(Case):
     def test_rows_are_sorted_and_filtered(self):
         self.open()
         names = self.script(COLUMN, 1)
-        self.assertEqual((len(names), *names[:2], names[-1]), (200, "oracle", "method_of_author_196", "best constant action"))
+        self.assertEqual((len(names), *names[:2], names[-1]), (200, "oracle", "method of author 196", "best constant action"))
         success = [float(text[:5]) for text in self.script(COLUMN, 2)]
         self.click("#table1 thead th:nth-child(3) button")
         self.assertEqual([float(text[:5]) for text in self.script(COLUMN, 2)], sorted(success, reverse=True))
@@ -62,7 +62,7 @@ class BoardInABrowser(Case):
         self.click("#table1 input[type=search]")
         self.script("document.querySelector('#table1 input[type=search]').focus()")
         self.press("AUTHOR_19")
-        self.assertEqual(set(self.script(COLUMN, 1)), {f"method_of_author_{i}" for i in (19, *range(190, 197))})
+        self.assertEqual(set(self.script(COLUMN, 1)), {"method of author 19"}, "an id finds its words")
         self.press("\b" * 9)
         self.assertEqual(len(self.script(COLUMN, 1)), 200)
         self.assertLess(max(self.script("return [...document.querySelectorAll('#table1 .frame:not(details *) tbody tr')].map((row) => row.offsetHeight)")),

@@ -211,6 +211,8 @@ class DrawnCommands(Case):
         self.assertRegex(said, r"\nflat: .*\nstructured: ")
         self.call("run", "out/drawn_1.json", "--answers", "none", "--preset", "smoke", "--methods", "lga+meaning=named",
                   "--episodes", "1", "--demos", "1", "--set", "*.epochs=1", "--out", "run")
+        self.assertEqual(json.loads((self.dir / "run/run.json").read_text())["about"]["title"], "Drawn commands")
+        self.assertIn("<h1>Drawn commands: ", (self.dir / "run/report.html").read_text())
 
     def test_refusals_say_where(self):
         lexicon = json.loads((SHARE / "lexicons" / "household.json").read_text())

@@ -44,7 +44,7 @@ AboutSuite about_suite(const std::string& id, const Json& own) {
   const fs::path file = installed_suite(id);
   Json json = file.empty() ? Json::object() : read_json(file);
   if (!own.is_null()) json["about"] = own;
-  const JsonReader suite(json, own.is_null() ? file.string() : "run.json");
+  const JsonReader suite(json, own.is_null() ? file.string() : "the suite of the run");
   if (suite.has("options")) about.options = suite.at("options").json();
   if (!suite.has("about")) return about;
   const JsonReader words = suite.at("about");

@@ -65,7 +65,7 @@ if (boards.length) {
     return [head, choice];
   });
   const apply = () => {
-    const said = wanted.value.toLowerCase().split(/\s+/).filter((word) => word);
+    const said = wanted.value.toLowerCase().split(/[\s_]+/).filter((word) => word);
     const known = rows.map((row) => [row, wordsOf(row)]);
     const whole = said.filter((word) => known.some(([, words]) => words.includes(word)));
     const chosen = choices.filter(([, choice]) => choice.value);
