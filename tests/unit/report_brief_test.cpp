@@ -41,7 +41,7 @@ TEST(Brief, ManyMethodsAreEightTheFirstAndTheReadersOwnAmongThem) {
   EXPECT_TRUE(has("theirs"));
   EXPECT_FALSE(has("LGA-HILL"));
   EXPECT_EQ(notes, (std::vector<std::string>{"§ below the random visible object, which needs no demonstration.",
-                                             "3 more rows are in the report."}));
+                                             "More rows in the report: 3."}));
 }
 
 TEST(Brief, NumbersOfDemonstrationsStandSideBySide) {

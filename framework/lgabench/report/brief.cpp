@@ -112,8 +112,8 @@ Brief brief(const Material& material) {
         if (means.marks.count(mark.word) > 0) brief.notes.push_back(fmt::format("{} {}.", mark.sign, mark.meaning));
       break;
     }
-    if (left_out > 0) brief.notes.push_back(fmt::format("{} more rows are in the report.", left_out));
-    if (tables.size() > 1) brief.notes.push_back(fmt::format("{} more tables are in the report.", tables.size() - 1));
+    if (left_out > 0) brief.notes.push_back(fmt::format("More rows in the report: {}.", left_out));
+    if (tables.size() > 1) brief.notes.push_back(fmt::format("More tables in the report: {}.", tables.size() - 1));
   }
   const std::vector<std::string> lacks = what_it_lacks(material.run);
   brief.notes.insert(brief.notes.end(), lacks.begin(), lacks.end());
