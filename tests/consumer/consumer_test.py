@@ -83,7 +83,7 @@ class Package(Consumer):
         for file in "man/man1/lgabench.1", "bash-completion/completions/lgabench", "zsh/site-functions/_lgabench", \
                 "fish/vendor_completions.d/lgabench.fish":
             text = (self.prefix / "share" / file).read_text().replace("\\-", "-")
-            for word in "check-plugin", "--demos":
+            for word in "check-plugin", "-l demos" if file.endswith(".fish") else "--demos":
                 self.assertIn(word, text, file)
 
     def test_holds_the_pages_and_the_examples(self):
