@@ -364,7 +364,7 @@ class Forgeries(Case):
         self.assertIn("q2-leaderboard: vouched_entries.json has no hash of its entry.json", self.leaderboard("check", expect=1).stderr)
 
     def test_a_revision_that_is_not_there(self):
-        for revision in "origin/mian", "main:board", "main\nmain":  # none, a directory, and two to whoever reads lines
+        for revision in "origin/mian", "main:board", "main\nmain:board/entries\nmain":  # none, a directory, three names of which one is a board without files
             said = self.leaderboard("check", "--against", revision, expect=2).stderr
             self.assertIn(f"--against {revision}: expected a revision of git that {self.dir} has, and its history", said)
 
