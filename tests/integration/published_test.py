@@ -12,8 +12,8 @@ import statistics
 import subprocess
 import unittest
 
-import visible
 from case import Case, command_line
+from visible_ids import ids_of_file
 
 SOURCE = pathlib.Path(__file__).parents[2]
 BOARD = SOURCE / "results/leaderboard"
@@ -106,7 +106,7 @@ class Published(Case):
         untitled = [id for id, about in suites.items() if "title" not in about]
         for page in sorted(BOARD.glob("*.html")):
             with self.subTest(page.name):
-                self.assertEqual(visible.ids(page.read_text(), untitled), [])
+                self.assertEqual(ids_of_file(page.read_text(), untitled), [])
 
     def test_what_build_does_for_a_new_entry_is_what_its_page_shows(self):
         """docs/entering-the-leaderboard.md, step 4, with the entry of steps 1 to 3 as it was played once."""
