@@ -43,7 +43,7 @@ struct Means {
     if (table.arms.size() == 1)
       for (const int n : table.demonstrations()) all.push_back({std::to_string(n), main.arm, n});
     else
-      for (const std::string& arm : table.arms) all.push_back({table.arm_title(arm), arm, main.demonstrations});
+      for (const std::string& arm : table.arms) all.push_back({table.arm_head(arm), arm, main.demonstrations});
     return all;
   }
 
@@ -73,7 +73,7 @@ struct Means {
     if (material.summary.tables.size() > 1) grid.caption += ", " + table.title();
     grid.heads = {one_arm ? "demonstrations" : table.demonstrations_text(main.demonstrations)};
     if (shown == Shown::main_and_mean)
-      grid.heads.insert(grid.heads.end(), {one_arm ? std::to_string(main.demonstrations) : table.arm_title(main.arm),
+      grid.heads.insert(grid.heads.end(), {one_arm ? std::to_string(main.demonstrations) : table.arm_head(main.arm),
                                            fmt::format("mean of {}{}", all.size(), one_arm ? "" : " arms")});
     else
       for (const Column& column : all) grid.heads.emplace_back(column.head);
@@ -95,7 +95,7 @@ Brief brief(const Material& material) {
   Brief brief;
   const std::vector<Table>& tables = material.summary.tables;
   const Table table = tables.empty() ? Table() : tables.front().without_errors();
-  if (const auto main = main_column(table, about_suite(material.run.suite))) {
+  if (const auto main = main_column(table, about_suite(material.run.suite, material.run.record.about))) {
     const std::vector<std::string> methods = table.methods(mean_scenario), references = table.references(mean_scenario),
                                    others = most_compared(methods, most_methods - 1);
     std::vector<std::string> ids;
