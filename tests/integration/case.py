@@ -13,6 +13,7 @@ import unittest
 BUILD = pathlib.Path(os.environ["LGABENCH_BUILD"])
 PROGRAM = BUILD / "bin" / "lgabench"
 FULL = os.environ.get("LGABENCH_FULL") == "1"
+PHYSICS = os.environ["LGABENCH_TEST_ENGINE"]
 if not FULL:  # the engine that takes least time, but where a test names one: what engines do has tests of its own
     os.environ["LGABENCH_TEST_ENGINE"] = "kinematic"
 FIXTURES = BUILD / "tests" / "plugins"
@@ -24,6 +25,8 @@ def command_line(*arguments):
     """The program's command line. Where a test names no engine, it is the one under test: MuJoCo may not be built."""
     words = [*map(str, arguments)]
     flag, engine = ENGINE.get(words[0] if words else "", (None, "mujoco"))
+    if words[1:2] == ["perturbations"]:  # of friction too
+        engine = PHYSICS
     return [PROGRAM, *words] + ([flag, engine] if engine != "mujoco" and flag not in words else [])
 
 

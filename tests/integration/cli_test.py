@@ -92,7 +92,7 @@ class Mistakes(Case):
             (["run", "q1", "--preset", "smokey"], r'q1.json: no preset "smokey" \(did you mean "smoke"\?\)'),
             (["run", "q1", "--scenarios", "hart"], r'^lgabench: --scenarios: no scenario "hart" \(did you mean "heart"\?\)$'),
             (["run", "q1", "--layout", "cell"], r'--layout: no layout "cell" \(did you mean "cells"\?\)$'),
-            (["run", "q1", "--preset"], r"^lgabench: --preset: expected PRESET after it$"),
+            (["run", "--engines", "mujoco", "q1", "--preset"], r"^lgabench: --preset: expected PRESET after it$"),
             (["run", "q1", "--plugin-path", "nowhere"], r"^lgabench: --plugin-path: nowhere: no such file or directory$"),
             (["run", "q1", "--plugin-path", "nowhere.py:Mine"], r"^lgabench: --plugin-path: nowhere.py: no such file or directory$"),
             (["list", "--plugin-path", "empty:empty"], r"^lgabench: --plugin-path: empty:empty: no such file or directory; for several, repeat --plugin-path$"),

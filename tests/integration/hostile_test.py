@@ -219,9 +219,9 @@ class Keepers(Harm):
     def test_causes_are_found_afterwards_in_a_copy(self):
         self.play("no", "run", "--preset", "leaderboard")
         before = {path: path.read_bytes() for path in (self.dir / "run").rglob("*") if path.is_file()}
-        said = self.call("attribute", "run", "--plugin-path", "mine_no").stderr
-        self.assertRegex(said, r"3 cells")
-        self.assertRegex(said, r"written to \S*run-attributed")
+        done = self.call("attribute", "run", "--plugin-path", "mine_no")
+        self.assertRegex(done.stderr, r"3 cells")
+        self.assertRegex(done.stdout, r"report: \S*run-attributed/report\.html")
         self.assertLessEqual(self.causes("run-attributed"), {"abstraction", "policy"})
         self.assertEqual({path: path.read_bytes() for path in (self.dir / "run").rglob("*") if path.is_file()}, before)
         self.call("verify", "run-attributed", "--all", "--plugin-path", "mine_no")

@@ -298,7 +298,7 @@ class Shards(Case):
         whole, both = (json.loads((self.dir / run / "run.json").read_text()) for run in ("whole", "both"))
         own = ("command", "started", "merged")
         self.assertEqual(*({name: value for name, value in run.items() if name not in own} for run in (whole, both)))
-        self.assertEqual([part["command"].split()[-1] for part in both["merged"]], ["1/2", "2/2"])
+        self.assertEqual([re.search(r"--shard (\S+)", part["command"])[1] for part in both["merged"]], ["1/2", "2/2"])
         self.assertEqual(self.call("merge", "both", "part1", "part2", expect=3).stdout, said.stdout)  # again
         # A run like any other: it goes on, and only what failed is computed again.
         said = self.call(*self.RUN, "--out", "both", "--resume", expect=3).stderr
@@ -369,7 +369,7 @@ class Shards(Case):
         self.assertEqual(sorted(run["cells"]), sorted(together))
         self.assertEqual((run["request"]["methods"], run["request"]["seeds"], run["request"]["references"]),
                          (["fixture_constant", "gcbc_seg+epochs=1"], [0, 1], True))
-        self.assertEqual({plugin["id"] for plugin in run["plugins"]} - {"mujoco", "bullet"}, {"fixture_constant", "gcbc_seg"})
+        self.assertEqual({plugin["id"] for plugin in run["plugins"]} - {"mujoco", "bullet", "kinematic"}, {"fixture_constant", "gcbc_seg"})
         self.assertEqual(run["settings"], {"gcbc_seg": {"epochs": 1}} | json.loads(
             (self.dir / "first/run.json").read_text())["settings"])
         self.call("verify", "all", "--sample", "2", "--plugin-path", FIXTURES / "good")

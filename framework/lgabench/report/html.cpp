@@ -295,7 +295,8 @@ std::string html(const Document& document, const Json& data, const std::string& 
                                   [](const Section& section) { return (section.in & on_page) != 0; });
   const fs::path installed = data_directory() / "page", style = installed / fs::path(script).replace_extension(".css");
   std::string summary = document.description;  // for those to whom the page is sent
-  for (const Span& span : document.headline) summary += span.text;
+  if (summary.empty())
+    for (const Span& span : document.headline) summary += span.text;
   return filled(read_file(installed / "page.html"),
                 {{"{{title}}", shown(document.title)},
                  {"{{summary}}", shown(summary.empty() ? document.question : summary)},
