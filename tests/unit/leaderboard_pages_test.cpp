@@ -179,8 +179,9 @@ TEST(Board, ThePreviewOfALinkSaysWhatThePageIs) {
   write_replayed(board.path, made_entry(small_setting(), "a", .5));
   build(board.path);
   for (const char* file : {"index.html", "q1.html"})
-    for (const char* part : {"<link rel=\"icon\" href=\"data:image/svg+xml,", "<meta property=\"og:title\" content=\"lgabench",
-                             "property=\"og:description\" content=\""})
+    for (const char* part :
+         {"<link rel=\"icon\" href=\"data:image/svg+xml,", "<meta property=\"og:title\" content=\"lgabench",
+          "property=\"og:description\" content=\""})
       EXPECT_SAYS(read_file(board.path / file), part) << file;
 }
 
