@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <functional>
 #include <optional>
-#include <set>
 
 #include <lgabench/abstraction/goal_mask.hpp>
 #include <lgabench/abstraction/scenes.hpp>
@@ -52,15 +51,8 @@ std::string outline(PictureSize size, const std::function<bool(int column, int r
 
 // The targets' outline, as far as they are in view.
 std::string targets(const Scene& scene, const Observation& seen) {
-  std::set<std::uint8_t> ids;
-  for (const SceneObject& object : scene.objects)
-    if (object.role == role::target) ids.insert(object.instance_id);
   const int step = page_step(seen.size);
-  const PictureSize size{seen.size.rows / step, seen.size.columns / step};
-  return outline(size, [&](int column, int row) {
-    if (column < 0 || row < 0 || column >= size.columns || row >= size.rows) return false;
-    return ids.count(seen.ids[static_cast<std::size_t>(step * row * seen.size.columns + step * column)]) != 0;
-  });
+  return outline({seen.size.rows / step, seen.size.columns / step}, target_pixels(scene, seen));
 }
 
 // Its axis perceives in cells of a run alone: such an arm is drawn as its control.

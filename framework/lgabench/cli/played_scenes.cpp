@@ -2,6 +2,7 @@
 
 #include <iostream>
 #include <iterator>
+#include <set>
 #include <utility>
 
 #include <lgabench/abstraction/scenes.hpp>
@@ -9,6 +10,7 @@
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/json.hpp>
+#include <lgabench/core/shown.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/plugin/loader.hpp>
 
@@ -40,6 +42,17 @@ Environment* PlayedScenes::on(const std::string& engine, const Scenario& scenari
     return nullptr;
   }
   return made.get();
+}
+
+std::function<bool(int column, int row)> target_pixels(const Scene& scene, const Observation& seen) {
+  std::set<std::uint8_t> ids;
+  for (const SceneObject& object : scene.objects)
+    if (object.role == role::target) ids.insert(object.instance_id);
+  const int step = page_step(seen.size), columns = seen.size.columns / step, rows = seen.size.rows / step;
+  return [=, &seen](int column, int row) {
+    if (column < 0 || row < 0 || column >= columns || row >= rows) return false;
+    return ids.count(seen.ids[static_cast<std::size_t>(step * row * seen.size.columns + step * column)]) != 0;
+  };
 }
 
 void answer_requests(const std::string& verb, const std::function<Json(const JsonReader&)>& answer) {

@@ -35,6 +35,10 @@ class PlayedScenes {
   std::map<std::string, std::unique_ptr<Played>> cells_;  // by file
 };
 
+/// Whether a target is in view at a pixel of the picture that a page shows (page_step()); false outside of it. Holds
+/// `seen`.
+std::function<bool(int column, int row)> target_pixels(const Scene& scene, const Observation& seen);
+
 /// Answers each of the JSON list on standard input with a line of JSON: {"problem": why} where answering throws an
 /// Error. `verb` is named in errors. @throws InputError where there is no such list.
 void answer_requests(const std::string& verb, const std::function<Json(const JsonReader&)>& answer);

@@ -1,5 +1,4 @@
 // lgabench-worker strips: episodes as pictures, before and after their action, as a request on stdin lists them.
-#include <set>
 #include <vector>
 
 #include <lgabench/cell/picture.hpp>
@@ -41,17 +40,11 @@ std::string strip(PlayedScenes& scenes, const PictureRequest& request) {
   if (!environment) throw InputError("the run's engine is not installed: " + end.engine);
   const Observation before = environment->reset(scene);
   const ActionSpace& space = find_environment(played.scenario.environment).action_space();
-  std::set<std::uint8_t> targets;
-  for (const SceneObject& object : scene.objects)
-    if (object.role == role::target) targets.insert(object.instance_id);
   const int step = page_step(before.size), columns = before.size.columns / step, rows = before.size.rows / step;
   const auto pixel = [&](int column, int row) {
     return static_cast<std::size_t>(step * row * before.size.columns + step * column);
   };
-  const auto is_target = [&](int column, int row) {
-    return column >= 0 && row >= 0 && column < columns && row < rows &&
-           targets.count(before.ids[pixel(column, row)]) > 0;
-  };
+  const auto is_target = target_pixels(scene, before);
   constexpr int between = 4;
   Picture picture(2 * columns + between, rows);
   picture.paste(0, 0, columns, rows, 1, [&](int x, int y) {

@@ -23,10 +23,12 @@ bool is_end(const std::string& which, char letter) {
 
 std::string first_of(const std::string& letters) { return letters.substr(0, looked_at); }
 
-const PlayedCell& cell_of(const Entry& entry, const std::string& key) {
-  return *std::find_if(entry.cells.begin(), entry.cells.end(),
-                       [&key](const PlayedCell& cell) { return cell.key == key; });
+auto find_cell(const Entry& entry, const std::string& key) {
+  return std::find_if(entry.cells.begin(), entry.cells.end(),
+                      [&key](const PlayedCell& cell) { return cell.key == key; });
 }
+
+const PlayedCell& cell_of(const Entry& entry, const std::string& key) { return *find_cell(entry, key); }
 
 // The arm with most success, or with least, in a cell of the fewest demonstrations and the first training seed; none
 // where no episode ended so. The first of equal ones, as the setting has them.
@@ -59,8 +61,7 @@ EntryScene read_scene(const JsonReader& reader, const std::string& which, const 
   reader.only({"cell", "arm", "index", "command", "sha256"});
   EntryScene scene{reader.at("cell").string(), reader.at("arm").string(), 0, reader.at("command").string(),
                    reader.at("sha256").string()};
-  const auto cell = std::find_if(entry.cells.begin(), entry.cells.end(),
-                                 [&scene](const PlayedCell& one) { return one.key == scene.cell; });
+  const auto cell = find_cell(entry, scene.cell);
   if (cell == entry.cells.end()) reader.at("cell").fail("a cell of the entry");
   const auto letters = cell->outcomes.find(scene.arm);
   if (letters == cell->outcomes.end()) reader.at("arm").fail("an arm of the cell");
