@@ -9,10 +9,12 @@
 
 #include <chrono>
 #include <climits>
+#include <future>
 #include <map>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "../fixture.hpp"
 
@@ -30,28 +32,51 @@ class Page {
     if (words_ == MAP_FAILED) throw std::runtime_error("cannot map " + file);
   }
   /// Waits there from now on.
-  void stay_at(int word) const {
-    std::thread([at = words_ + word] {
-      for (;;) ::syscall(SYS_futex, at, FUTEX_WAIT, *at, nullptr, nullptr, 0);
+  void stay_at(int word) const { stay(words_ + word); }
+  /// Waits there once what is returned is set.
+  std::promise<void> stay_later_at(int word) const {
+    std::promise<void> begin;
+    std::thread([at = words_ + word, begun = begin.get_future()]() mutable {
+      begun.wait();
+      stay(at);
     }).detach();
+    return begin;
   }
   bool somebody_is_at(int word) const {
     return ::syscall(SYS_futex, words_ + word, FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0) > 0;
   }
 
  private:
+  static void stay(unsigned* at) {
+    for (;;) ::syscall(SYS_futex, at, FUTEX_WAIT, *at, nullptr, nullptr, 0);
+  }
+
   unsigned* words_;
 };
 
-// Both came to this step, which waits for the other one.
-void meet(const Page& page, int step, int own) {
-  page.stay_at(100 + 2 * step + own);
-  for (const auto end = Clock::now() + std::chrono::seconds(60); Clock::now() < end;) {
-    if (page.somebody_is_at(100 + 2 * step + (1 - own))) return;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+// Three steps, at each of which one method waits for the other. All threads begin at once: nobody's number of threads changes
+// while the other one counts them.
+class Meetings {
+ public:
+  Meetings(const Page& page, int own) : page_(page), own_(own) {
+    for (int step = 0; step < 3; ++step) begin_.push_back(page.stay_later_at(100 + 2 * step + own));
   }
-  throw std::runtime_error("met nobody");
-}
+  void next() {
+    begin_[step_].set_value();
+    const int other = 100 + 2 * static_cast<int>(step_++) + (1 - own_);
+    for (const auto end = Clock::now() + std::chrono::seconds(60); Clock::now() < end;) {
+      if (page_.somebody_is_at(other)) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    throw std::runtime_error("met nobody");
+  }
+
+ private:
+  const Page& page_;
+  int own_;
+  std::size_t step_ = 0;
+  std::vector<std::promise<void>> begin_;
+};
 
 void start_group(int members) {
   pid_t first = 0;
@@ -75,7 +100,7 @@ void start_threads(int count) {
 // What is found of processes with numbers near one's own.
 template <class Look>
 void look_around(Look look) {
-  for (pid_t pid = std::max(1, ::getpid() - 3000); pid < ::getpid() + 3000; ++pid)
+  for (pid_t pid = std::max(1, ::getpid() - 10000); pid < ::getpid() + 10000; ++pid)
     if (pid != ::getpid()) look(pid);
 }
 
@@ -110,17 +135,19 @@ class Neighbour : public fixture::FixtureMethod<fixture::StayPolicy> {
     const std::string how = services.options.at("how");
     const Page page(services.options.at("file"));
     const int own = services.seed == 0 ? 0 : 1, number = 40 + own;
-    meet(page, 0, own);
+    Meetings meetings(page, own);
+    meetings.next();
     if (how == "futex") page.stay_at(number);
     if (how == "group") start_group(number);
     if (how == "threads") start_threads(number);
-    meet(page, 1, own);
+    meetings.next();
     int heard = 0;
-    for (int i = 0; i < 20 && heard == 0; ++i) {
+    const auto end = Clock::now() + std::chrono::seconds(how == "group" ? 1 : 30);  // of groups nothing is heard
+    while (heard == 0 && Clock::now() < end) {
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
       heard = hear(how, page, own);
     }
-    meet(page, 2, own);
+    meetings.next();
     std::this_thread::sleep_for(std::chrono::seconds(3));  // until the other one has met this one, too
     throw std::runtime_error("heard " + std::to_string(heard));
   }
