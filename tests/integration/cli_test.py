@@ -187,13 +187,13 @@ class DryRuns(Case):
     def test_say_how_much_there_is_to_do_and_do_nothing(self):
         said = self.call("run", "q1", "--dry-run", "--methods", "lga,gcbc_dart,fixture_constant", *PLUGIN, "--jobs", "1").stdout
         self.assertEqual([p for p in self.dir.iterdir()], [])
-        self.assertRegex(said, r"^runs/q1-\w{8}: 806 cells, 0 already computed, 806 to compute\n")
+        self.assertRegex(said, r"^runs/q1-\w{8}: 1001 cells, 0 already computed, 1001 to compute\n")
         self.assertRegex(said, r"\nlga +195 +0 +\d+ min  cells measured elsewhere\n")
         self.assertRegex(said, r"\nfixture_constant +195 +0 +\d+ min  LGA's cells\n")
         self.assertRegex(said, r"\nabout \d+ min with 1 worker\nthen at most as long again for cells of fixture_constant, to find the "
                                r"causes of failures\ndisk: \d+ MB in runs/q1-\w{8}, and at most \d+ MB")
         self.assertNotIn("causes", self.call("run", "q1", "--dry-run", "--methods", "lga,gcbc_dart").stdout)
-        self.assertIn("shard 2/2 of a run of 806 cells",
+        self.assertIn("shard 2/2 of a run of 1001 cells",
                       self.call("run", "q1", "--dry-run", "--methods", "lga,gcbc_dart,fixture_constant", *PLUGIN,
                                 "--shard", "2/2").stdout)
 
@@ -227,7 +227,7 @@ class DryRuns(Case):
         first = process.stderr.readline()
         process.terminate()
         process.wait()
-        self.assertRegex(first, r"^416 cells to compute, 0 already computed: about \d+ min with 1 worker; --dry-run shows of what\n$")
+        self.assertRegex(first, r"^611 cells to compute, 0 already computed: about \d+ min with 1 worker; --dry-run shows of what\n$")
 
 
 class Resuming(Case):

@@ -37,7 +37,7 @@ class Elements(Case):
 
     def test_elements_make_the_same_run(self):
         said = self.cluster("--elements", "3").stdout
-        self.assertRegex(said, r"^20 cells in 3 elements; the longest takes about \d+ s on 1 cores, by cells measured elsewhere")
+        self.assertRegex(said, r"^28 cells in 3 elements; the longest takes about \d+ s on 1 cores, by cells measured elsewhere")
         self.assertIn(f"To submit: {self.dir}/out/submit", said)
         script = (self.dir / "out/array.sbatch").read_text()
         for line in ("--array=1-3", "--cpus-per-task=1", "--time=00:30:00", "--signal=B:TERM@120", "--requeue"):
@@ -50,8 +50,8 @@ class Elements(Case):
         self.assertIn("not begun: 2\nto finish: --array=2\n", status)
         self.assertEqual(self.play(2).returncode, 0)
         done = self.play(1)  # again: harmless
-        self.assertIn("0 cells computed, 7 reused, 0 failed", done.stderr)
-        self.assertRegex(self.call("status", "out").stdout, r" 1/3 +7 +7 +0 +0 +0 ")
+        self.assertIn("0 cells computed, 10 reused, 0 failed", done.stderr)
+        self.assertRegex(self.call("status", "out").stdout, r" 1/3 +10 +10 +0 +0 +0 ")
         merged = subprocess.run(["bash", self.dir / "out/merge.sbatch"], capture_output=True, text=True, cwd="/",
                                 env=self.environment, timeout=300)
         self.assertEqual(merged.returncode, 0, merged.stderr)
@@ -68,7 +68,7 @@ class Elements(Case):
         (cells[1] / "status.json").write_text(json.dumps({**status, "state": "failed"}))
         said = json.loads(self.call("status", "part", "--json", expect=3).stdout)
         part = said["parts"][0]
-        self.assertEqual([part[name] for name in ("shard", "cells", "done", "failed", "missing")], [1, 10, 8, 1, 1])
+        self.assertEqual([part[name] for name in ("shard", "cells", "done", "failed", "missing")], [1, 14, 12, 1, 1])
         self.assertEqual((said["array"], said["absent"]), ("1-2", "2"))
 
     def test_status_counts_a_cell_once(self):

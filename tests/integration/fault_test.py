@@ -21,7 +21,7 @@ FULL = os.environ.get("LGABENCH_FULL") == "1"
 # Tiny but real: one method that trains, one that does not, the reference rows.
 RUN = ["run", "q1", "--scenarios", "heart", "--methods", "lga,fixture_constant", "--demos", "10", "--seeds", "0:2",
        "--episodes", "3", "--set", "lga.epochs=10", "--plugin-path", FIXTURES / "good"]
-CELLS = 2 * 3 + 2
+CELLS = 2 * 4 + 2
 # Tinier: a cell takes a tenth of a second.
 NO_TRAINING = ["run", "q1", "--scenarios", "heart", "--methods", "fixture_constant", "--demos", "10", "--seeds", "0",
                "--episodes", "2", "--no-reference", "--plugin-path", FIXTURES / "good"]

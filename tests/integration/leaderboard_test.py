@@ -330,7 +330,7 @@ class Refusals(Board):
         missing = [line for line in self.refused("part") if line.startswith("missing: ")]
         self.assertIn("missing: fixture_constant heart cells n=2 seed=1", missing)
         self.assertIn("fixture_constant: 4 of the preset's 8 cells are there", self.refused("part"))
-        self.assertEqual(len(missing), 2 * 4 + 4 + 2 * 2)  # two rows, constant_action, and two that learn nothing
+        self.assertEqual(len(missing), 4 * 4 + 2 * 2)  # two rows, two references that learn, and two that do not
 
     def test_a_cell_that_the_host_failed(self):
         self.mark_failed(self.cell(), "host")

@@ -20,7 +20,7 @@ from case import BUILD, Case, FIXTURES, NO_CLOCK, PROGRAM, command_line, some_of
 # Small but real: both shipped methods train, for seconds.
 SMALL = ["q1", "--scenarios", "heart,letter", "--methods", "lga,gcbc_dart", "--demos", "10", "--seeds", "0",
          "--episodes", "4", "--set", "lga.epochs=200", "--set", "gcbc_dart.epochs=5"]
-SMALL_CELLS = 2 * 5  # scenarios x (methods + constant action + random object + oracle)
+SMALL_CELLS = 2 * 6  # scenarios x (methods + constant action + most demonstrated + random object + oracle)
 
 
 class BadInput(Case):

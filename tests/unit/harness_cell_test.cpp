@@ -10,7 +10,9 @@
 #include <lgabench/cell/demonstrations.hpp>
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cell/hdf5.hpp>
+#include <lgabench/cell/reference_actor.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/hash.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <tabletop/two_poses.hpp>
 
@@ -268,10 +270,76 @@ TEST_F(Play, ReferenceRowsThatHearNoCommandFindTheTargetWhereTheSceneGivesItAway
   const std::vector<TestScene> hard = scenes_with("hard"), near = scenes_with("near_miss");
   EXPECT_GT(of(hard, reference_actor("most_shared")), 28) << "the target alone shares both, half of the time";
   EXPECT_NEAR(of(near, reference_actor("most_shared")), 20, 15) << "all three share alike; 4 sigma of 60 is 15";
-  std::vector<Scene> played;
-  for (const TestScene& test : near) played.push_back(test.scene);
+  DemonstratedScenes played;
+  for (const TestScene& test : near) played.scenes.push_back(test.scene);
   EXPECT_EQ(of(near, reference_actor("never_demonstrated", played)), 0) << "every target was demonstrated";
   EXPECT_NEAR(of(near, reference_actor("never_demonstrated")), 20, 15);
+  EXPECT_EQ(of(near, reference_actor("most_demonstrated", played)), 60) << "a near miss lacks one of its features";
+  EXPECT_EQ(of(near, reference_actor("least_demonstrated", played)), 0);
+  EXPECT_NEAR(of(near, reference_actor("most_demonstrated")), 20, 15) << "all are equal";
+  EXPECT_NEAR(of(near, reference_actor("least_demonstrated")), 20, 15);
+}
+
+TEST_F(Play, MostDemonstratedCountsWhatTheScenesCommandTook) {
+  Json json = load_scenario("red_heart").json;
+  json["tests"] = Json::array({{{"arm", "test"}, {"distractors", {2, 2}}, {"near_miss", true}}});
+  Scene scene = tests(read_scenario(json, "red_heart"), 1).front().scene;
+  const Observation seen = environment->reset(scene);
+  std::vector<SceneObject> objects;  // the target, and two others
+  for (const SceneObject& object : scene.objects)
+    if (object.role != role::goal) objects.push_back(object);
+  std::stable_partition(objects.begin(), objects.end(), [](const SceneObject& o) { return o.role == role::target; });
+  objects[1] = {"star", "blue", role::distractor, {}, 0, objects[1].instance_id};
+  objects[2] = {"ring", "tiger", role::distractor, {}, 0, objects[2].instance_id};
+  Observation labelled = seen;  // no two share a feature
+  for (Instance& one : labelled.instances)
+    for (const SceneObject& object : objects)
+      if (one.id == object.instance_id) one.object_type = object.object_type, one.texture = object.texture;
+  DemonstratedScenes shown;
+  const auto took = [&](int command, std::size_t object) {
+    SceneObject taken = objects[object];
+    taken.role = role::target;
+    shown.scenes.emplace_back();
+    shown.scenes.back().command = command;
+    shown.scenes.back().objects = {taken};
+  };
+  took(0, 1);
+  took(1, 0);
+  took(1, 0);
+  const auto takes = [&](const char* row, int command, std::size_t object) {
+    scene.command = command;
+    return reference_actor(row, shown)(*environment, scene, labelled).action ==
+           environment->expert_action_for(objects[object].instance_id);
+  };
+  EXPECT_TRUE(takes("most_demonstrated", 0, 1));
+  EXPECT_TRUE(takes("most_demonstrated", 1, 0));
+  EXPECT_TRUE(takes("most_demonstrated", 2, 0)) << "nobody demonstrated it: what all took most often";
+  for (const int command : {0, 1, 2}) EXPECT_TRUE(takes("least_demonstrated", command, 2));
+}
+
+TEST(ReferenceRows, LeadToTheReceiverThatWasDemonstrated) {
+  const Scenario scenario = load_scenario("fetch_fruit");
+  const auto environment = make_environment(scenario, make_engine());
+  for (int i = 0; i < 5; ++i) {
+    const Scene scene = test_scene(scenario, "table", "few", 0, i);
+    const Observation seen = environment->reset(scene);
+    Scene elsewhere = scene;  // led to another receiver
+    for (SceneObject& object : elsewhere.objects)
+      if (object.role == "receiver")
+        object.role = role::distractor;
+      else if (object.role == role::distractor && object.position_m.x > 1.1)
+        object.role = "receiver";
+    for (const Scene& shown : {scene, elsewhere}) {
+      const SceneObject* const receiver = shown.find("receiver");
+      const Action action = reference_actor("most_demonstrated", {{shown}, "receiver"})(*environment, scene, seen).action;
+      ASSERT_EQ(action.size(), 8u);
+      EXPECT_NEAR(action[6], receiver->position_m.x, 1e-9) << i;
+      EXPECT_NEAR(action[7], receiver->position_m.y, 1e-9) << i;
+      const Action other =
+          reference_actor("least_demonstrated", {{shown}, "receiver"})(*environment, scene, seen).action;
+      EXPECT_NE(std::pair(other[6], other[7]), std::pair(action[6], action[7])) << i;
+    }
+  }
 }
 
 // A policy that fails in one way on every third scene and does nothing of use on the others.

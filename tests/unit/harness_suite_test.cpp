@@ -95,8 +95,8 @@ TEST(Suite, GridAsJsonReadsBack) {
 TEST(Cells, ExpandCrossesTheGrid) {
   const Suite suite = load_suite("q1");
   const auto cells = expand(suite, small_grid(), {}, catalogue());
-  // 2 scenarios x (2 numbers x 3 seeds x (2 methods + constant action) + random object + oracle)
-  EXPECT_EQ(cells.size(), 2u * (2 * 3 * 3 + 2));
+  // 2 scenarios x (2 numbers x 3 seeds x (2 methods + constant action + most demonstrated) + random object + oracle)
+  EXPECT_EQ(cells.size(), 2u * (2 * 3 * 4 + 2));
   std::vector<std::string> keys;
   for (const Cell& cell : cells) keys.push_back(key(cell));
   std::sort(keys.begin(), keys.end());

@@ -133,6 +133,56 @@ TEST_F(Relatives, AGateErasesWhatTheActionIsSensitiveTo) {
   EXPECT_EQ(erased, read_by(*shut));
 }
 
+TEST_F(Relatives, WhatWasTakenIsSelectedOfTheCommandsOwnDemonstrations) {
+  const FeatureSpace& space = scenario.space;
+  const ActionSpace& actions = find_environment("tabletop").action_space();
+  std::set<std::string> types, textures;
+  for (const Demonstration& one : demonstrations)
+    for (const Instance& instance : one.steps.front().observation.instances)
+      if (instance.id == taken(one, actions)) types.insert(instance.object_type), textures.insert(instance.texture);
+  ASSERT_EQ(types, std::set<std::string>{"heart"});
+  ASSERT_GT(textures.size(), 1u);
+  std::vector<Demonstration> shown = demonstrations;
+  shown.back().instruction.utterance = "Another.";
+  const std::string of_other = "Another.", of_none = "Nobody showed this.";
+  const auto revised = [&](const char* id, const std::string& utterance, const std::optional<Meaning>& selected) {
+    const PluginInfo& plugin = catalogue.find("method", id);
+    const Json all = resolve_options(plugin, Json::object());
+    method = load_method(plugin);
+    EXPECT_TRUE(method->needs(all).revise);
+    RecordedLanguageModel lm(scenario, scenario.recorded);
+    TruthAsHuman human(scenario.commands);
+    Services services{lm, human, all, seed, log, actions};
+    Selection first = method->select({instruction.utterance, scenario.task}, space, services);
+    if (selected) first.target = *selected;
+    return method->revise({utterance, scenario.task}, first, shown, services).target;
+  };
+  const auto contains = [](const std::vector<std::string>& all, const std::string& one) {
+    return std::find(all.begin(), all.end(), one) != all.end();
+  };
+  const std::string& last = [&]() -> const std::string& {
+    for (const Instance& instance : shown.back().steps.front().observation.instances)
+      if (instance.id == taken(shown.back(), actions)) return instance.texture;
+    throw Error("nothing was taken");
+  }();
+  EXPECT_EQ(revised("taken_features", of_other, {}), Meaning({"heart"}, {last}));
+  const FeatureSet of_all = revised("taken_features", of_none, {}).product();
+  EXPECT_EQ(of_all.object_types, std::vector<std::string>{"heart"});
+  EXPECT_EQ(std::set<std::string>(of_all.textures.begin(), of_all.textures.end()), textures);
+
+  const Meaning star({"star"}, {"tiger"});
+  const FeatureSet both = revised("lga_taken", of_other, star).product();
+  EXPECT_EQ(both.object_types.size(), 2u);
+  for (const char* type : {"heart", "star"}) EXPECT_TRUE(contains(both.object_types, type));
+  for (const std::string& texture : {std::string("tiger"), last}) EXPECT_TRUE(contains(both.textures, texture));
+  EXPECT_EQ(revised("lga_taken", of_none, star), star) << "what others took says nothing of it";
+  Meaning two = star;
+  two.sets.push_back({{"ring"}, {"tiger"}});
+  const Meaning three = revised("lga_taken", of_other, two);
+  ASSERT_EQ(three.sets.size(), 3u);
+  EXPECT_EQ(three.sets.back(), (FeatureSet{{"heart"}, {last}}));
+}
+
 #if defined(LGABENCH_HAS_DIFFUSION)
 TEST_F(Relatives, DiffusionActsTheSameWhateverItSawBeforeAndMovesWithTheMask) {
   for (const char* input : {"mask", "object_mask", "rgb"}) {

@@ -5,9 +5,9 @@
 #include <functional>
 
 #include <lgabench/core/random.hpp>
+#include <lgabench/core/stations.hpp>
 #include <lgabench/learning/centroid_policy.hpp>
 #include <lgabench/learning/heat_map.hpp>
-#include <lgabench/learning/stations.hpp>
 #include <lgabench/learning/training.hpp>
 
 namespace lgabench {

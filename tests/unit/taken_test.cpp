@@ -3,7 +3,7 @@
 #include <map>
 
 #include <lgabench/abstraction/scenes.hpp>
-#include <lgabench/core/method.hpp>
+#include <lgabench/core/stations.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 #include "testing.hpp"
@@ -26,6 +26,10 @@ TEST(Taken, IsTheOraclesTargetInEveryTask) {
           const Action label = environment->expert_action();
           const auto found = taken({{}, {{seen, label}}}, environment->action_space());
           EXPECT_EQ(found, scene.find("target")->instance_id) << id << " " << layout << " " << i;
+          const SceneObject* const receiver = scene.find("receiver");
+          EXPECT_EQ(receiving({{}, {{seen, label}}}, environment->action_space()),
+                    receiver ? std::optional(receiver->instance_id) : std::nullopt)
+              << id << " " << i;
           ++tasks[scenario.task];
         }
       } catch (const NothingToShow&) {  // what is too wide for this layout

@@ -1,74 +1,13 @@
 #include <lgabench/cell/evaluator.hpp>
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <iterator>
-#include <set>
 #include <utility>
 
 #include <lgabench/core/hash.hpp>
-#include <lgabench/core/random.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench {
 namespace {
-
-Action oracle(const Environment& environment, const Scene&, const Observation&) { return environment.expert_action(); }
-
-using Instances = std::vector<Instance>;
-
-// What can be seen and taken.
-Instances visible(const Scene& scene, const Observation& observation) {
-  const SceneObject* goal = scene.find(role::goal);
-  Instances all;
-  for (const Instance& instance : observation.instances)
-    if (instance.pixels > 0 && !(goal && instance.id == goal->instance_id)) all.push_back(instance);
-  if (all.empty()) throw MethodError("no object is visible");
-  return all;
-}
-
-// Handles one of them, drawn from the row's stream, as the oracle would.
-Action any_of(const Instances& some, const char* row, const Environment& environment, const Scene& scene) {
-  RandomStream stream(fmt::format("{}/{}", row, hex(scene.hash())));
-  return environment.expert_action_for(some[stream.below(static_cast<std::uint32_t>(some.size()))].id);
-}
-
-Action random_object(const Environment& environment, const Scene& scene, const Observation& observation) {
-  return any_of(visible(scene, observation), "random_object", environment, scene);
-}
-
-Action most_shared(const Environment& environment, const Scene& scene, const Observation& observation) {
-  const Instances all = visible(scene, observation);
-  int most = 0;
-  Instances some;
-  for (const Instance& one : all) {
-    int shared = 0;
-    for (const Instance& other : all) shared += (other.object_type == one.object_type) + (other.texture == one.texture);
-    if (shared > most) some.clear();
-    if (shared >= most) some.push_back(one);
-    most = std::max(most, shared);
-  }
-  return any_of(some, "most_shared", environment, scene);
-}
-
-using Pairs = std::set<std::pair<std::string, std::string>>;  // of types and textures
-
-Actor never_demonstrated(const std::vector<Scene>& demonstrated) {
-  Pairs shown;
-  for (const Scene& scene : demonstrated)
-    for (const SceneObject& o : scene.objects)
-      if (o.role == role::target) shown.emplace(o.object_type, o.texture);
-  return [shown](const Environment& environment, const Scene& scene, const Observation& observation) {
-    const Instances all = visible(scene, observation);
-    Instances some;
-    std::copy_if(all.begin(), all.end(), std::back_inserter(some), [&shown](const Instance& one) {
-      return shown.count({one.object_type, one.texture}) == 0;
-    });
-    return Move(any_of(some.empty() ? all : some, "never_demonstrated", environment, scene));
-  };
-}
 
 Episode play(Environment& environment, const TestScene& test, const Actor& actor) {
   const Scene& scene = test.scene;
@@ -118,17 +57,6 @@ Actor policy_actor(Policy& policy, const std::vector<Instruction>& instructions,
 
 Actor policy_actor(Policy& policy, std::function<Instruction(const Scene&)> told, const std::string& plugin_id) {
   return acting(policy, std::move(told), plugin_id);
-}
-
-Actor reference_actor(const std::string& id, const std::vector<Scene>& demonstrated) {
-  if (id == "oracle") return oracle;
-  if (id == "random_object") return random_object;
-  if (id == "most_shared") return most_shared;
-  if (id == "never_demonstrated") return never_demonstrated(demonstrated);
-  throw InputError(
-      fmt::format("reference row \"{}\": expected constant_action, random_object, oracle, most_shared or "
-                  "never_demonstrated",
-                  id));
 }
 
 std::vector<Episode> evaluate(Environment& environment, const std::vector<TestScene>& scenes, const Actor& actor,

@@ -31,12 +31,6 @@ Actor policy_actor(Policy& policy, const std::vector<Instruction>& instructions,
 /// Likewise, told what `told` says of the scene.
 Actor policy_actor(Policy& policy, std::function<Instruction(const Scene&)> told, const std::string& plugin_id);
 
-/// The rows that a method is measured against: "oracle", or the oracle's rule for one visible object that no command
-/// decides, the goal excepted: "random_object", any; "most_shared", one of those that share types and textures with
-/// most others; "never_demonstrated", one whose type and texture together were no target's in the scenes
-/// `demonstrated`, any where there is none. Drawn from a stream of row and scene. @throws InputError for another id.
-Actor reference_actor(const std::string& id, const std::vector<Scene>& demonstrated = {});
-
 /// One episode a scene, in order; `done(n)` after each. A MethodError fails its episode as method_error. @throws
 /// EngineError if the engine fails: then nothing can be said of the method.
 std::vector<Episode> evaluate(Environment& environment, const std::vector<TestScene>& scenes, const Actor& actor,

@@ -15,6 +15,7 @@
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cell/hosted_axes.hpp>
 #include <lgabench/cell/perturbed.hpp>
+#include <lgabench/cell/reference_actor.hpp>
 #include <lgabench/cell/selected_by.hpp>
 #include <lgabench/cell/showing.hpp>
 #include <lgabench/cell/steps.hpp>
@@ -124,11 +125,12 @@ std::vector<Scene> training_scenes(const Scenario& scenario, const Cell& cell, c
   }
 }
 
-// Training scenes of a reference row that looks at them, and is shown no demonstrations.
-std::vector<Scene> demonstrated_to(const Cell& cell, const Scenario& scenario) {
+// What a reference row looks at: training scenes, though nobody demonstrates in them.
+DemonstratedScenes shown_to(const Cell& cell, const Scenario& scenario) {
   Selected truth;
   truth.needs.targets = Needs::Targets::truth;
-  return sample(scenario, cell.layout, truth, cell.training_seed, scenario.training_scenes(cell.demonstrations));
+  return {sample(scenario, cell.layout, truth, cell.training_seed, scenario.training_scenes(cell.demonstrations)),
+          scenario.second ? scenario.second->id : Role()};
 }
 
 std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell, Course course,
@@ -375,7 +377,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   const auto told = [&](const Scene& scene) { return told_in(scene, scenario, cell, selected.instructions); };
   const Actor actor = policy && perturbs            ? policy_actor(*policy, told, id)
                       : policy                      ? policy_actor(*policy, selected.instructions, id)
-                      : course == Course::reference ? reference_actor(id, demonstrated_to(cell, scenario))
+                      : course == Course::reference ? reference_actor(id, shown_to(cell, scenario))
                                                     : Actor();
   std::optional<Showing> showing;
   if (policy) showing.emplace(*policy, id);

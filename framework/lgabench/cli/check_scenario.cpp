@@ -8,7 +8,7 @@
 
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/abstraction/scenes.hpp>
-#include <lgabench/cell/evaluator.hpp>
+#include <lgabench/cell/reference_actor.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/findings.hpp>
 #include <lgabench/cli/gallery.hpp>

@@ -18,6 +18,7 @@
 #include <lgabench/host/python_method.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/record/answer_source.hpp>
+#include <lgabench/record/reference_rows.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -171,14 +172,10 @@ std::vector<std::string> words(const std::string& kind, const std::string& of, c
 }  // namespace
 
 Json reference_rows() {
-  return {{{"id", "constant_action"},
-           {"summary", "The best constant action: the same in every scene, from the training actions alone"}},
-          {{"id", "most_shared"},
-           {"summary", "The visible object that shares types and textures with most others (suites that ask for it)"}},
-          {{"id", "never_demonstrated"},
-           {"summary", "A visible object that is like no demonstrated target (suites that ask for it)"}},
-          {{"id", "oracle"}, {"summary", "The expert, who knows the target: what success there can be"}},
-          {{"id", "random_object"}, {"summary", "A visible object, drawn at random and handled as the expert would"}}};
+  Json all = Json::array();
+  for (const ReferenceRow& row : lgabench::reference_rows())
+    all.push_back({{"id", row.id}, {"summary", row.summary + (row.in_every_suite ? "" : " (suites that ask for it)")}});
+  return all;
 }
 
 void add_list(CLI::App& app, int& exit) {

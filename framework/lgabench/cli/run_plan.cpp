@@ -341,7 +341,7 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
           "results are not kept. KEY: the first digits of the cell's key (--debug list prints all keys)")
       ->type_name("KEY");
   verb.add_flag("--no-reference", a.no_reference,
-                "Leave out the reference rows: constant_action, random_object, oracle, and the suite's own");
+                "Leave out the reference rows: those of every suite, and the suite's own (lgabench list rows)");
   CLI::Option* const json = verb.add_flag("--json", a.json, "Print summary.json instead of the means");
   verb.add_flag("--tables", a.tables, "Print every table of the report instead of the means")->excludes(json);
   verb.add_flag("--quiet", a.quiet, "Print no progress, and of the means the table alone");

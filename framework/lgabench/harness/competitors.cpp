@@ -6,6 +6,8 @@
 #include <map>
 #include <set>
 
+#include <lgabench/record/reference_rows.hpp>
+
 namespace lgabench {
 namespace {
 
@@ -66,11 +68,6 @@ struct Layer {
   }
 };
 
-bool is_reference_row(const std::string& id) {
-  return id == "constant_action" || id == "random_object" || id == "oracle" || id == "most_shared" ||
-         id == "never_demonstrated";
-}
-
 // The row that a written one is an example of: its id, and whether it selects alone.
 std::string group_of(const std::string& written) {
   const std::string id = row_id(written);
@@ -112,7 +109,7 @@ std::vector<Competitor> competitors(const Suite& suite, const Design& design, co
   std::vector<std::string> groups;
   for (const std::string& written : design.methods) {
     const std::string id = row_id(written);
-    if (is_reference_row(id))  // tables find a row by its name
+    if (find_reference_row(id))  // tables find a row by its name
       throw InputError(fmt::format("methods: \"{}\" is a reference row; expected a method of another id", id));
     infos.push_back(&catalogue.find("method", id));
     groups.push_back(group_of(written));

@@ -9,6 +9,7 @@
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/suggest.hpp>
 #include <lgabench/harness/competitors.hpp>
+#include <lgabench/record/reference_rows.hpp>
 
 namespace lgabench {
 namespace {
@@ -186,7 +187,9 @@ Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, 
 }
 
 bool learns(const Competitor& row) {
-  return !row.is_reference() || row.id == "constant_action" || row.id == "never_demonstrated";
+  if (!row.is_reference()) return true;
+  const ReferenceRow* const reference = find_reference_row(row.id);
+  return reference && reference->learns;
 }
 
 std::vector<Cell> expand(const Suite& suite, const Design& design, const Variation& variation,
@@ -196,11 +199,11 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
   if (!variation.participants.empty() && std::none_of(methods.begin(), methods.end(), asks_people))
     throw InputError("--humans: expected a method that asks people, such as human or lga_hill; this run has none");
 
-  std::vector<const char*> references;
-  if (variation.references) {
-    references = {"constant_action", "random_object", "oracle"};
-    for (const std::string& row : suite.references) references.push_back(row.c_str());
-  }
+  std::vector<Competitor> references;
+  if (variation.references)
+    for (const ReferenceRow& row : reference_rows())
+      if (row.in_every_suite || has(suite.references, row.id))
+        references.push_back({"reference", row.id, row.id, "1", Json::object()});
   std::vector<SelectionErrors> all_errors = design.selection_errors;
   if (all_errors.empty()) all_errors.emplace_back();
   std::vector<Cell> cells;
@@ -224,7 +227,6 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
         cells.push_back(cell);
       }
     };
-    const auto reference = [](const char* row) { return Competitor{"reference", row, row, "1", Json::object()}; };
     for (const std::string& layout : design.layouts) {
       for (const std::string& engine : design.engines) {
         cell.layout = layout;
@@ -234,12 +236,12 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
             for (const Competitor& method : methods)
               for (const SelectionErrors& errors : all_errors)
                 if (errors.none() || !has(suite.selects_nothing, method.id)) add(method, n, seed, errors);
-            for (const char* row : references)
-              if (learns(reference(row))) add(reference(row), n, seed);
+            for (const Competitor& row : references)
+              if (learns(row)) add(row, n, seed);
           }
-        for (const char* row : references)
-          if (!learns(reference(row)))
-            for (const std::uint64_t seed : scene_sets(design.test_scenes, design.seeds)) add(reference(row), 0, seed);
+        for (const Competitor& row : references)
+          if (!learns(row))
+            for (const std::uint64_t seed : scene_sets(design.test_scenes, design.seeds)) add(row, 0, seed);
       }
     }
   }

@@ -11,6 +11,7 @@
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/scenario_files.hpp>
 #include <lgabench/core/suggest.hpp>
+#include <lgabench/record/reference_rows.hpp>
 #include <lgabench/record/suite_claims.hpp>
 
 namespace lgabench {
@@ -250,8 +251,12 @@ Suite load_suite(const std::string& id) {
       reader.at("groups").fail("each scenario in one group at most");
   }
   if (reader.has("selects_nothing")) suite.selects_nothing = names(reader.at("selects_nothing"));
-  if (reader.has("references"))
-    suite.references = names(reader.at("references"), "reference row", {"most_shared", "never_demonstrated"});
+  if (reader.has("references")) {
+    std::vector<std::string> asked_for;
+    for (const ReferenceRow& row : reference_rows())
+      if (!row.in_every_suite) asked_for.push_back(row.id);
+    suite.references = names(reader.at("references"), "reference row", asked_for);
+  }
   if (reader.has("about")) {
     expect_about(reader.at("about"));
     if (is_file) suite.about = reader.at("about").json();

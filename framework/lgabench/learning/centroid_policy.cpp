@@ -7,9 +7,9 @@
 #include <utility>
 
 #include <lgabench/core/error.hpp>
+#include <lgabench/core/stations.hpp>
 #include <lgabench/learning/motion.hpp>
 #include <lgabench/learning/places.hpp>
-#include <lgabench/learning/stations.hpp>
 
 namespace lgabench {
 namespace {

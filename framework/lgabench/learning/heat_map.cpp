@@ -8,10 +8,10 @@
 
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/flush_denormals.hpp>
+#include <lgabench/core/stations.hpp>
 #include <lgabench/learning/heat_map_network.hpp>
 #include <lgabench/learning/motion.hpp>
 #include <lgabench/learning/places.hpp>
-#include <lgabench/learning/stations.hpp>
 
 namespace lgabench {
 namespace {

@@ -1,0 +1,55 @@
+// What demonstrations took, by its features: what they tell of a command without its words.
+#pragma once
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <lgabench/core/stations.hpp>
+
+// Type and texture of each object.
+using Features = std::set<std::pair<std::string, std::string>>;
+
+struct TakenFeatures {
+  Features taken, received;  // the latter: what it was brought to, where actions have stations
+
+  void add(const lgabench::Demonstration& one, const lgabench::ActionSpace& actions) {
+    const lgabench::Observation& seen = one.steps.at(0).observation;
+    add(taken, seen, lgabench::taken(one, actions));
+    add(received, seen, lgabench::receiving(one, actions));
+  }
+
+ private:
+  static void add(Features& to, const lgabench::Observation& seen, std::optional<std::uint8_t> id) {
+    for (const lgabench::Instance& one : seen.instances)
+      if (one.id == id) to.emplace(one.object_type, one.texture);
+  }
+};
+
+// Of the command's demonstrations.
+inline TakenFeatures taken_for(const lgabench::Command& command, const std::vector<lgabench::Demonstration>& shown,
+                               const lgabench::ActionSpace& actions) {
+  TakenFeatures features;
+  for (const lgabench::Demonstration& one : shown)
+    if (one.instruction.utterance == command.utterance) features.add(one, actions);
+  return features;
+}
+
+// The set and all types and all textures of these objects, in the space's order.
+inline lgabench::FeatureSet with(const Features& features, const lgabench::FeatureSet& set,
+                                 const lgabench::FeatureSpace& space) {
+  std::set<std::string> types(set.object_types.begin(), set.object_types.end()),
+      textures(set.textures.begin(), set.textures.end());
+  for (const auto& [type, texture] : features) {
+    types.insert(type);
+    textures.insert(texture);
+  }
+  const auto in_order = [](std::vector<std::string> names, const std::set<std::string>& wanted) {
+    const auto other = [&wanted](const std::string& name) { return wanted.count(name) == 0; };
+    names.erase(std::remove_if(names.begin(), names.end(), other), names.end());
+    return names;
+  };
+  return {in_order(space.object_types, types), in_order(space.textures, textures)};
+}
