@@ -27,7 +27,7 @@ TEST(Taken, IsTheOraclesTargetInEveryTask) {
           const auto found = taken({{}, {{seen, label}}}, environment->action_space());
           EXPECT_EQ(found, scene.find("target")->instance_id) << id << " " << layout << " " << i;
           const SceneObject* const receiver = scene.find("receiver");
-          EXPECT_EQ(receiving({{}, {{seen, label}}}, environment->action_space()),
+          EXPECT_EQ(receiving({{}, {{seen, label}}}, actions_of(scenario)),
                     receiver ? std::optional(receiver->instance_id) : std::nullopt)
               << id << " " << i;
           ++tasks[scenario.task];

@@ -125,13 +125,14 @@ Actor by_demonstrations(const std::string& row, Extreme which, const Demonstrate
     Instances seen = visible(scene, observation);
     const Instance object = drawn(extreme(seen, demonstrated.taken, which), row, scene);
     Action action = environment.expert_action_for(object.id);
-    const ActionSpace& actions = environment.action_space();
     seen.erase(std::remove_if(seen.begin(), seen.end(), [&](const Instance& one) { return one.id == object.id; }),
                seen.end());
-    if (actions.stations.all.empty() || shown.second.empty() || seen.empty()) return Move(action);
+    if (shown.actions.stations.all.empty() || shown.second.empty() || seen.empty()) return Move(action);
     const Instance receiver = drawn(extreme(seen, demonstrated.received, which), row + "/" + shown.second, scene);
-    if (const auto at = seen_at(actions, observation, receiver.id))
-      action = led_to(actions.stations, nearest_station(actions.stations, *at), std::move(action));
+    if (const auto at = seen_at(shown.actions, observation, receiver.id)) {
+      const Stations& stations = shown.actions.stations;
+      action = led_to(stations, nearest_station(stations, *at), std::move(action));
+    }
     return Move(action);
   };
 }

@@ -10,7 +10,8 @@ namespace lgabench {
 /// The scenes that were demonstrated, and what their targets are brought to.
 struct DemonstratedScenes {
   std::vector<Scene> scenes{};
-  Role second{};  // of the second set's object in them; "" where there is none
+  Role second{};          // of the second set's object in them; "" where there is none
+  ActionSpace actions{};  // of the scenario
 };
 
 /// "oracle", or the oracle's rule for one visible object, the goal excepted: "random_object", any; "most_shared", one

@@ -130,7 +130,7 @@ DemonstratedScenes shown_to(const Cell& cell, const Scenario& scenario) {
   Selected truth;
   truth.needs.targets = Needs::Targets::truth;
   return {sample(scenario, cell.layout, truth, cell.training_seed, scenario.training_scenes(cell.demonstrations)),
-          scenario.second ? scenario.second->id : Role()};
+          scenario.second ? scenario.second->id : Role(), actions_of(scenario)};
 }
 
 std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell, Course course,
