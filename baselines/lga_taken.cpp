@@ -21,13 +21,13 @@ class LgaTaken : public CloningMethod {
   }
   Selection revise(const Command& command, const Selection& selected, const std::vector<Demonstration>& demonstrations,
                    Services& services) override {
-    const auto [taken, received] = taken_for(command, demonstrations, services.actions);
+    const auto [taken, received] = taken_for(command.utterance, demonstrations, services.actions);
     Selection revised = selected;
     Meaning& target = revised.target;
     if (target.is_product()) {
       target = with(taken, target.product(), space_);
     } else {
-      for (const auto& [type, texture] : taken)
+      for (const auto& [type, texture] : taken.objects)
         if (!target.belongs(type, texture)) target.sets.push_back({{type}, {texture}});
     }
     if (revised.second) static_cast<FeatureSet&>(*revised.second) = with(received, *revised.second, space_);
