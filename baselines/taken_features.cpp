@@ -47,9 +47,9 @@ class ActsOnTheLikest : public Policy {
     const TakenFeatures& features = own == by_command_.end() ? all_ : own->second;
     Instruction likest_of_all = instruction;
     const Counts target = likest(observation, features.taken, {});
-    likest_of_all.selection.target = Meaning();
-    for (const auto& [type, texture] : target.objects)
-      likest_of_all.selection.target.sets.push_back({{type}, {texture}});
+    Meaning& meaning = likest_of_all.selection.target = Meaning();
+    if (!target.none()) meaning.sets.clear();
+    for (const auto& [type, texture] : target.objects) meaning.sets.push_back({{type}, {texture}});
     if (auto& second = likest_of_all.selection.second)
       static_cast<FeatureSet&>(*second) = with(likest(observation, features.received, target), {}, space_);
     return policy_->act(observation, likest_of_all);
