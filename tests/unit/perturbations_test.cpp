@@ -285,7 +285,7 @@ TEST(Perturbations, ASuiteNamesThemInALineEach) {
   EXPECT_EQ(whole.tests.size(), 1 + perturbation_ids().size() * 4);
   EXPECT_EQ(whole.tests[1].id, "distractors_1");
   const Design smoke = preset_design(suite, "smoke");
-  const Scenario small = suite_scenario(suite, "heart", Truth::released, &smoke.perturbations);
+  const Scenario small = suite_scenario(suite, "heart", Truth::released, &smoke);
   EXPECT_EQ(small.tests.size(), 1u + 7 * 2);
   const Scene control = test_scene(whole, "continuous", "control", 0, 5),
               other = test_scene(whole, "continuous", "light_colour_4", 0, 5);

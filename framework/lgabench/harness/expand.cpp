@@ -137,7 +137,8 @@ std::vector<std::string> suite_scenario_ids(const Suite& suite, const Design& de
   return ids;
 }
 
-Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, const Json* perturbations) {
+Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, const Design* of) {
+  const Design& design = of ? *of : suite.design;
   std::string base = id, variant;
   for (const auto& [name, ignored] : suite.variants.items()) {
     const std::string end = "_" + name;
@@ -161,7 +162,10 @@ Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, 
     json["commands"] = first_commands(json["commands"], changes["commands"].get<std::size_t>());
   const Json first = json["tests"].front();
   if (suite.only_arms) json["tests"] = Json::array();
-  for (const Json& arm : changes.value("arms", suite.arms)) {
+  for (Json arm : changes.value("arms", suite.arms)) {
+    const auto except = arm.value("except", std::vector<std::string>());
+    if (has(except, base) || has(except, id) || (!design.arms.empty() && !has(design.arms, arm.at("arm")))) continue;
+    arm.erase("except");
     json["tests"].push_back(first);
     json["tests"].back().update(arm);
     json["tests"].back().update(scenes);
@@ -169,7 +173,7 @@ Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, 
       json["tests"].back()["near_miss"] = suite.near_miss[base];
   }
   const Json control = json["tests"].front();
-  for (const Json& axis : perturbations ? *perturbations : suite.design.perturbations) {
+  for (const Json& axis : design.perturbations) {
     const Json except = axis.value("except", Json::array());
     if (std::find(except.begin(), except.end(), base) != except.end()) continue;
     for (const int level : axis["levels"]) {
@@ -208,7 +212,7 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
   if (all_errors.empty()) all_errors.emplace_back();
   std::vector<Cell> cells;
   for (const std::string& id : suite_scenario_ids(suite, design)) {
-    const Scenario scenario = suite_scenario(suite, id, variation.truth, &design.perturbations);
+    const Scenario scenario = suite_scenario(suite, id, variation.truth, &design);
     expect_own_scenes(suite, design, scenario);
     expect_layouts(scenario, design.layouts);
     expect_errors_possible(suite, scenario, all_errors);

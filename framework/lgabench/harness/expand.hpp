@@ -22,10 +22,10 @@ struct Variation {
 
 /// Ids of the scenarios that the design names, as they are in the suite: of its variants, where it has any.
 std::vector<std::string> suite_scenario_ids(const Suite& suite, const Design& design);
-/// A suite's scenario, or one of its variants: its own arms, then those that the suite adds, then those of
-/// the perturbations, the suite's where none are given. @throws InputError for one
-/// of another environment.
-Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, const Json* perturbations = nullptr);
+/// A suite's scenario, or one of its variants: its own arms, then those that the suite adds and the design plays, then
+/// those of the perturbations; the suite's design where none is given. @throws InputError for one of another
+/// environment.
+Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, const Design* design = nullptr);
 /// A cell of the design without its layout, engine, method, demonstrations and training seed.
 Cell unplayed_cell(const Suite& suite, const Design& design, const Scenario& scenario, const AnswerSource& answers);
 

@@ -51,6 +51,13 @@ const std::vector<std::string> grid_members{
 const std::vector<std::string> may_be_absent{"test_scenes",      "smoke",         "options",
                                              "selection_errors", "perturbations", "train_on"};
 
+// What a preset may say beside them: of the suite's arms, which are played.
+std::vector<std::string> preset_members() {
+  std::vector<std::string> members = grid_members;
+  members.emplace_back("arms");
+  return members;
+}
+
 // Method id or "*" -> option -> value, as far as it can be checked without plugins.
 Json options_of(const JsonReader& options, const std::vector<std::string>& methods) {
   std::vector<std::string> known{"*"};
@@ -107,12 +114,12 @@ Json arms_of(const JsonReader& list) {
 
 // What pages say of the suite (report/about_suite.hpp).
 void expect_about(const JsonReader& about) {
-  about.only({"title", "question", "main_arm", "main_demonstrations", "arms", "arm_titles", "rows"});
+  about.only({"title", "question", "main_arm", "main_demonstrations", "arms", "arm_titles", "rows", "presets"});
   about.at("question").string();
   if (about.has("title")) about.at("title").string();
   if (about.has("main_arm")) about.at("main_arm").string();
   if (about.has("main_demonstrations")) about.at("main_demonstrations").integer(1, most);
-  for (const char* name : {"arms", "arm_titles", "rows"}) {
+  for (const char* name : {"arms", "arm_titles", "rows", "presets"}) {
     if (!about.has(name)) continue;
     const JsonReader words = about.at(name);
     if (!words.json().is_object()) words.fail("an object");
@@ -137,12 +144,13 @@ Json to_json(const Design& design) {
       {"smoke", design.smoke},         {"options", design.options}};
   for (const SelectionErrors& errors : design.selection_errors) json["selection_errors"].push_back(to_json(errors));
   if (!design.perturbations.empty()) json["perturbations"] = design.perturbations;
+  if (!design.arms.empty()) json["arms"] = design.arms;
   if (design.train_on) json["train_on"] = to_json(*design.train_on);
   return json;
 }
 
 Design apply(const JsonReader& overrides, Design design) {
-  overrides.only(grid_members);
+  overrides.only(preset_members());
   if (overrides.has("scenarios")) design.scenarios = names(overrides.at("scenarios"), "scenario", scenario_ids());
   if (overrides.has("layouts")) design.layouts = names(overrides.at("layouts"), "layout", installed_layouts());
   if (overrides.has("engines")) design.engines = names(overrides.at("engines"));
@@ -165,6 +173,7 @@ Design apply(const JsonReader& overrides, Design design) {
   if (overrides.has("selection_errors"))
     design.selection_errors = distinct<SelectionErrors>(overrides.at("selection_errors"), read_selection_errors);
   if (overrides.has("perturbations")) design.perturbations = perturbations_of(overrides.at("perturbations"));
+  if (overrides.has("arms")) design.arms = names(overrides.at("arms"));
   if (overrides.has("train_on")) design.train_on = train_on_of(overrides.at("train_on"));
   if (overrides.has("smoke")) design.smoke = overrides.at("smoke").boolean();
   return design;
@@ -240,6 +249,12 @@ Suite load_suite(const std::string& id) {
       if (variant.json().empty()) variant.fail("\"train\", \"commands\" or \"arms\"");
     }
   }
+  std::vector<std::string> played = suite.design.scenarios;
+  for (const std::string& scenario : suite.design.scenarios)
+    for (const auto& [name, ignored] : suite.variants.items()) played.push_back(fmt::format("{}_{}", scenario, name));
+  if (reader.has("arms"))
+    for (const JsonReader& arm : reader.at("arms").elements())
+      if (arm.has("except")) names(arm.at("except"), "scenario of the suite", played);
   if (reader.has("groups")) {
     suite.groups = reader.at("groups").json();
     std::vector<std::string> grouped;
@@ -288,7 +303,13 @@ Design preset_design(const Suite& suite, const std::string& preset) {
     for (const auto& item : suite.presets.items()) known.push_back(item.key());
     throw InputError(fmt::format("{}: {}", suite.file, none_named("preset", preset, known)));
   }
-  return apply(JsonReader(suite.presets[preset], suite.file, "/presets/" + preset), suite.design);
+  const JsonReader overrides(suite.presets[preset], suite.file, "/presets/" + preset);
+  if (overrides.has("arms")) {
+    std::vector<std::string> arms;
+    for (const Json& arm : suite.arms) arms.push_back(arm.at("arm"));
+    names(overrides.at("arms"), "arm of the suite", arms);
+  }
+  return apply(overrides, suite.design);
 }
 
 }  // namespace lgabench

@@ -29,6 +29,7 @@ struct Design {
   std::vector<SelectionErrors> selection_errors{};  // made in what methods select; none: cells without
   /// [{"axis", "levels"}, ...]: arms of every scenario beside its others, its first arm with that perturbation.
   Json perturbations = Json::array();
+  std::vector<std::string> arms{};         // which of the suite's are played; none: all
   std::optional<TrainOn> train_on{};       // what demonstrations are perceived through
   std::string options_place = "/options";  // in the suite's file, for messages; no member
 };
@@ -46,7 +47,8 @@ std::vector<std::string> train_on_axes();
 struct Suite {
   std::string id, environment;
   Design design;
-  /// Arms that every scenario plays beside its own: each is the scenario's first arm with these members changed.
+  /// Arms that every scenario plays beside its own: each is the scenario's first arm with these members changed. Those
+  /// that "except" names, with or without their variant, do not play it.
   Json arms = Json::array();
   bool only_arms = false;           // instead of the scenario's own
   Json train = Json::object();      // members that replace the "train" of every scenario

@@ -110,7 +110,7 @@ std::string answers_hash(const fs::path& run, const Installed& installed, const 
   std::set<std::string> lines;
   if (const auto* recorded = std::get_if<RecordedAnswers>(&cell.answers))
     for (const Setting::Scenario& s : installed.setting.scenarios) {
-      const Scenario scenario = suite_scenario(installed.suite, s.id, Truth::released);
+      const Scenario scenario = suite_scenario(installed.suite, s.id, Truth::released, &installed.design);
       const std::string source = recorded_source(scenario, recorded->source, cell.method.asks == "edit");
       lines.insert(source + " " + sha256_file(data_directory() / "answers" / (source + ".json")));
     }

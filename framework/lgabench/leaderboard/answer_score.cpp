@@ -70,7 +70,7 @@ Json scored(const Installed& installed, const std::string& asked, Answerer answe
   SelectionCost cost;
   std::string model;
   for (const Setting::Scenario& played : setting.scenarios) {
-    const Scenario scenario = suite_scenario(installed.suite, played.id, Truth::released);
+    const Scenario scenario = suite_scenario(installed.suite, played.id, Truth::released, &installed.design);
     LanguageModel& answers = answerer.of(scenario);
     for (int i = 0; i < static_cast<int>(scenario.commands.size()); ++i) {
       if (scenario.commands[static_cast<std::size_t>(i)].ambiguous) continue;  // in no mean

@@ -117,7 +117,7 @@ Installed installed_setting(const std::string& suite, const std::string& preset)
       installed.suite.id, preset,           {}, design.layouts, design.demonstrations, design.seeds, design.episodes,
       design.test_scenes, design.scene_seed};
   for (const std::string& id : suite_scenario_ids(installed.suite, design)) {
-    const Scenario scenario = suite_scenario(installed.suite, id, Truth::released);
+    const Scenario scenario = suite_scenario(installed.suite, id, Truth::released, &design);
     Setting::Scenario& one = setting.scenarios.emplace_back();
     one.id = id;
     one.sha256 = sha256(canonical(scenario.json));
@@ -133,8 +133,9 @@ std::vector<Cell> cells_of_row(const Installed& installed, const Competitor& row
   Cell cell;
   for (const Place& place : installed.setting.places(learns(row))) {
     if (cells.empty() || !(place.scenario == cells.back().scenario_id()))
-      cell = unplayed_cell(installed.suite, installed.design,
-                           suite_scenario(installed.suite, place.scenario, Truth::released), answers);
+      cell =
+          unplayed_cell(installed.suite, installed.design,
+                        suite_scenario(installed.suite, place.scenario, Truth::released, &installed.design), answers);
     cell.layout = place.layout;
     cell.engine = engine;
     cell.method = row;

@@ -53,8 +53,10 @@ AboutSuite about_suite(const std::string& id, const Json& own) {
   if (words.has("main_arm")) about.main_arm = words.at("main_arm").string();
   if (words.has("main_demonstrations"))
     about.main_demonstrations = static_cast<int>(words.at("main_demonstrations").integer(1, 1'000'000));
-  for (const auto& [name, all] :
-       {std::pair("arms", &about.arms), {"arm_titles", &about.arm_titles}, {"rows", &about.rows}})
+  for (const auto& [name, all] : {std::pair("arms", &about.arms),
+                                  {"arm_titles", &about.arm_titles},
+                                  {"rows", &about.rows},
+                                  {"presets", &about.presets}})
     if (words.has(name))
       for (const auto& one : words.at(name).json().items()) (*all)[one.key()] = words.at(name).at(one.key()).string();
   return about;

@@ -16,6 +16,7 @@ struct AboutSuite {
   std::map<std::string, std::string> arms;        // what their test scenes are
   std::map<std::string, std::string> arm_titles;  // of arms, and of variants
   std::map<std::string, std::string> rows;        // method, with its options -> what tells it from the others
+  std::map<std::string, std::string> presets;     // what the board says beside a preset's table
   Json options = Json::object();                  // method or "*" -> option -> value, of the suite's own design
 
   /// What the arm's scenes are; that of "seen" for "seen_members_1", an arm of a variant. "" where nothing is said.
