@@ -27,6 +27,10 @@ for arm in seen new seen_near new_near; do
   draw something_to_drink_water_out_of_members_2 ${arm}_members_2 25% continuous few_members
   mv something_to_drink_water_out_of_members_2-${arm}_members_2.png few_members-$arm.png
 done
+for arm in new_decisive_near new_other_near; do
+  draw something_to_drink_water_out_of_members_1 ${arm}_members_1 25% continuous few_members
+  mv something_to_drink_water_out_of_members_1-${arm}_members_1.png few_members-$arm.png
+done
 for arm in control clutter new; do
   draw polka_dotted_letter_members ${arm}_members 25% continuous knowledge
   mv polka_dotted_letter_members-${arm}_members.png knowledge-$arm.png
@@ -36,6 +40,6 @@ for arm in kept moved gone; do
   mv polka_dotted_letter_cue-${arm}_cue.png knowledge-$arm.png
 done
 for arm in seen unseen; do
-  draw many_hearts_commands_4 ${arm}_commands_4 25% continuous many_commands
-  mv many_hearts_commands_4-${arm}_commands_4.png many_commands-$arm.png
+  draw unheard_hearts_commands_4 ${arm}_commands_4 25% continuous many_commands
+  mv unheard_hearts_commands_4-${arm}_commands_4.png many_commands-$arm.png
 done

@@ -44,17 +44,27 @@ void read_members(const JsonReader& scenes, const JsonReader& file, const Scenar
     if (scenario.as_method_asks) members.fail("\"as_method_asks\": false beside it");
   } else {
     content.members_tested = members.string();
-    if (content.members_tested != "seen" && content.members_tested != "new") members.fail("seen or new");
+    const std::vector<std::string> known{"seen", "new", "new_decisive", "new_other"};
+    if (std::find(known.begin(), known.end(), content.members_tested) == known.end())
+      members.fail(fmt::format("{}", fmt::join(known, ", ")));
     if (!file.has("train") || !file.at("train").has("members")) members.fail("\"members\" in \"train\"");
   }
   const long long count = training ? content.members : file.at("train").at("members").integer(1, most);
   for (const ScenarioCommand& command : scenario.commands) {
     const FeatureSet& meant = command.truth.target.product();
     const auto all = static_cast<long long>(meant.object_types.size() * meant.textures.size());
-    if (count > all || (content.members_tested == "new" && count == all))
+    const bool others = !training && content.members_tested != "seen";
+    if (count > all || (others && count == all))
       (training ? members : file.at("train").at("members"))
-          .fail(fmt::format("{} {}, the pairs of type and texture that \"{}\" means",
-                            content.members_tested == "new" ? "fewer than" : "at most", all, command.utterance));
+          .fail(fmt::format("{} {}, the pairs of type and texture that \"{}\" means", others ? "fewer than" : "at most",
+                            all, command.utterance));
+    if (content.members_tested != "new_decisive") continue;
+    for (const auto& [names, in_space, what] :
+         {std::tuple(&meant.object_types, &scenario.space.object_types, "object types"),
+          {&meant.textures, &scenario.space.textures, "textures"}})
+      if (names->size() < in_space->size() && static_cast<long long>(names->size()) <= count)
+        members.fail(fmt::format("a command that means more than {} {}: \"{}\" means {}", count, what,
+                                 command.utterance, names->size()));
   }
 }
 
@@ -123,7 +133,8 @@ const Content& content_of(const Scenario& scenario, const std::string& arm) {
 }
 
 std::vector<std::string> scenario_members(const Task& task) {
-  std::vector<std::string> names{"never_distractor", "decoys", "words", "undecided", "near_miss_sets"};
+  std::vector<std::string> names{"never_distractor", "decoys",        "unheard_decoys", "words",
+                                 "undecided",        "near_miss_sets"};
   append(names, task.scenario_members());
   return names;
 }
@@ -153,6 +164,8 @@ Content read_content(const Scenario& scenario, const JsonReader& file, const Jso
       if (scenes->has(other)) scenes->at(other).fail("no such member beside \"decoys\"");
     if (decoys.empty()) scenes->at("decoys").fail("\"decoys\", a list of sets, in the scenario");
     content.decoys = decoys;
+    content.unheard_decoys = file.has("unheard_decoys") && file.at("unheard_decoys").boolean() &&
+                             scenes->has("unseen") && scenes->at("unseen").boolean();
   }
   if (scenes && scenes->has("members")) read_members(*scenes, file, scenario, training, content);
   if (scenes && scenes->has("cue")) content.cue = read_cue(*scenes, file, scenario, content, training);

@@ -33,7 +33,8 @@ struct Content : SceneContent {
   std::optional<common::NearMiss>
       near_miss;  // others share the target's type or texture, and each other's: near_misses(), or meant_objects()
   /// Training: of how many members of what a command means, pairs of type and texture, targets are; 0: of all. Tests:
-  /// of these ("seen"), or of the others ("new"); "": of all. Which they are: see members_of().
+  /// of these ("seen"), of the others ("new"), or of those of the others that share no value that decides with any of
+  /// these ("new_decisive"), or do ("new_other"); "": of all. Which they are: see members_of(), shares_what_decides().
   int members = 0;
   std::string members_tested;
   bool later_letters = false;  // "the one that comes earliest": a distractor may be a later letter
@@ -42,6 +43,9 @@ struct Content : SceneContent {
   std::vector<std::string> choice;
   /// Others are of these sets, each of another one as far as they go: what further commands mean. Empty: of any.
   std::vector<FeatureSet> decoys;
+  /// Of an arm with unseen commands: targets and decoys are in none of `decoys`, and decoys are what other unseen
+  /// commands mean, each of a type of its own, in textures that the given command may mean, so that neither tells.
+  bool unheard_decoys = false;
   std::optional<Cue> cue;
   /// A scenario whose meaning is more than one product, or that says what a careless reading keeps: meant_objects().
   bool by_meaning = false;

@@ -107,6 +107,44 @@ std::vector<Features> sample_decoys(const Request& request, const std::vector<co
   return decoys;
 }
 
+bool holds(const std::vector<FeatureSet>& sets, const Features& one) {
+  return std::any_of(sets.begin(), sets.end(),
+                     [&one](const FeatureSet& set) { return set.contains(one.type, one.texture); });
+}
+
+// What unseen commands mean and no demonstrated one does: as the target is, but for the command. Each of a type of its
+// own: of two of one type and a third alone, an order of types would find the third too often.
+std::vector<Features> sample_unheard_decoys(const Request& request, const Features& target,
+                                            const std::vector<bool>& allowed, int count, RandomStream& random) {
+  constexpr int tries = 200;
+  const FeatureSpace& space = request.scenario.space;
+  const FeatureSet& meant = request.meant.target.product();
+  std::vector<Features> decoys;
+  for (const int type : random.permutation(static_cast<int>(allowed.size()))) {
+    const std::string& name = space.object_types[static_cast<std::size_t>(type)];
+    if (static_cast<int>(decoys.size()) == count) break;
+    if (!allowed[static_cast<std::size_t>(type)] || name == target.type) continue;
+    for (int n = 0; n < tries; ++n) {
+      const Features one{name, any_of(meant.textures, random)};
+      const auto is_meant = [&one](const ScenarioCommand& command) {
+        return !command.seen && command.truth.target.product().contains(one.type, one.texture);
+      };
+      const std::vector<ScenarioCommand>& all = request.scenario.commands;
+      if (std::none_of(all.begin(), all.end(), is_meant) || meant.contains(one.type, one.texture) ||
+          holds(request.content.decoys, one))
+        continue;
+      decoys.push_back(one);
+      break;
+    }
+  }
+  if (static_cast<int>(decoys.size()) < count)
+    throw NothingToShow(
+        fmt::format("unheard_decoys: expected {} further types of what unseen commands of scenario "
+                    "\"{}\" mean and no other, got {}",
+                    count, request.scenario.id, decoys.size()));
+  return decoys;
+}
+
 // docs/protocol.md, section 3: objects that don't satisfy the command.
 std::vector<Features> sample_distractors(const Request& request, const Features& target, RandomStream& random) {
   const FeatureSpace& space = request.scenario.space;
@@ -153,7 +191,10 @@ std::vector<Features> sample_distractors(const Request& request, const Features&
     };
     distractors = near_misses(near, count, random);
   }
-  if (!content.decoys.empty()) distractors = sample_decoys(request, excluded, allowed, count, random);
+  if (content.unheard_decoys)
+    distractors = sample_unheard_decoys(request, target, allowed, count, random);
+  else if (!content.decoys.empty())
+    distractors = sample_decoys(request, excluded, allowed, count, random);
   for (int i = static_cast<int>(distractors.size()); i < count; ++i) {
     if (!later_letters.empty() && random.coin()) {
       const std::string& type = any_of(later_letters, random);
@@ -207,10 +248,19 @@ std::vector<SceneObject> sample_objects(const Request& request, const Streams& s
   const bool by_choice = !content.choice.empty();
   if (by_choice && !second) return sample_choice(request, stream("choice"));
 
-  const Features target =
-      members.empty() ? sample_features(scenario, layout, content.target.value_or(meant.target.product()),
-                                        std::min(request.widest_m(), layout.widest_target_m), "a target", draws.targets)
-                      : members[draws.targets.below(static_cast<std::uint32_t>(members.size()))];
+  const auto draw_target = [&] {
+    return members.empty()
+               ? sample_features(scenario, layout, content.target.value_or(meant.target.product()),
+                                 std::min(request.widest_m(), layout.widest_target_m), "a target", draws.targets)
+               : members[draws.targets.below(static_cast<std::uint32_t>(members.size()))];
+  };
+  Features target = draw_target();
+  for (int n = 0; content.unheard_decoys && holds(content.decoys, target); target = draw_target())
+    if (++n == 200)
+      throw NothingToShow(
+          fmt::format("unheard_decoys: expected that each unseen command of scenario \"{}\" means "
+                      "what no set of \"decoys\" holds",
+                      scenario.id));
   std::vector<SceneObject> objects{{target.type, target.texture, role::target, {}, 0, 0}};
   if (by_choice) {
     const std::vector<SceneObject> chosen = sample_choice(request, stream("choice"));
@@ -239,11 +289,26 @@ std::vector<Features> members_to_show(const Scenario& scenario, const SceneReque
   std::vector<Features> all =
       members_of(scenario, request.layout, command, training ? request.seed : request.training_seed.value_or(0));
   const auto first_new = all.begin() + std::min<std::ptrdiff_t>(shown, static_cast<std::ptrdiff_t>(all.size()));
-  if (content.members_tested == "new")
-    all.erase(all.begin(), first_new);
+  const std::vector<Features> seen(all.begin(), first_new);
+  const std::string tested = training ? "seen" : content.members_tested;
+  if (tested == "seen")
+    all = seen;
   else
-    all.erase(first_new, all.end());
-  if (all.empty() || (content.members_tested != "new" && all.size() < static_cast<std::size_t>(shown)))
+    all.erase(all.begin(), first_new);
+  if (tested == "new_decisive" || tested == "new_other") {
+    const FeatureSet& meant = scenario.commands[static_cast<std::size_t>(command)].truth.target.product();
+    const auto is_other = [&](const Features& one) {
+      return std::any_of(seen.begin(), seen.end(), [&](const Features& shown_one) {
+        return shares_what_decides(meant, scenario.space, one, shown_one);
+      });
+    };
+    const auto goes = [&](const Features& one) { return is_other(one) != (tested == "new_other"); };
+    all.erase(std::remove_if(all.begin(), all.end(), goes), all.end());
+    if (all.empty())
+      throw NothingToShow(fmt::format("scenario \"{}\", layout {}: expected {} members beside the {} shown, got none",
+                                      scenario.id, request.layout, tested, seen.size()));
+  }
+  if (all.empty() || seen.size() < static_cast<std::size_t>(shown))
     throw InputError(fmt::format("scenario \"{}\", layout {}: expected more members that can be shown than {}",
                                  scenario.id, request.layout, shown));
   return all;
@@ -273,6 +338,12 @@ std::vector<SceneObject> placed_objects(const Request& request, const Streams& s
 }
 
 }  // namespace
+
+bool shares_what_decides(const FeatureSet& meant, const FeatureSpace& space, const Features& one,
+                         const Features& other) {
+  return (meant.object_types.size() < space.object_types.size() && one.type == other.type) ||
+         (meant.textures.size() < space.textures.size() && one.texture == other.texture);
+}
 
 std::vector<Features> members_of(const Scenario& scenario, const std::string& layout_id, int command,
                                  std::uint64_t training_seed) {
@@ -326,6 +397,7 @@ Scene with_distractors(const Scenario& scenario, const Scene& scene, int count, 
   content.distractors = {1, 1};
   content.hard = false;
   content.decoys.clear();
+  content.unheard_decoys = false;
   content.near_miss.reset();
   if (near_miss) content.near_miss.emplace();
   const Request request{

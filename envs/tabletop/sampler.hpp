@@ -27,4 +27,9 @@ Scene with_distractors(const Scenario& scenario, const Scene& scene, int count, 
 std::vector<Features> members_of(const Scenario& scenario, const std::string& layout, int command,
                                  std::uint64_t training_seed);
 
+/// Whether both have one value of what decides, of an axis of which the command leaves something out: the object type,
+/// the texture, or either.
+bool shares_what_decides(const FeatureSet& meant, const FeatureSpace& space, const Features& one,
+                         const Features& other);
+
 }  // namespace lgabench::tabletop

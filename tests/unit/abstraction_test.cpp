@@ -244,6 +244,10 @@ TEST(RecordedAnswers, AreEachScenariosOwn) {
       {"many_letters", {"claude", "claude"}},
       {"many_vessels", {"claude", "claude"}},
       {"many_vowels", {"claude", "claude"}},
+      {"unheard_hearts", {"claude_unheard", "claude_unheard"}},
+      {"unheard_letters", {"claude_unheard", "claude_unheard"}},
+      {"unheard_vessels", {"claude_unheard", "claude_unheard"}},
+      {"unheard_vowels", {"claude_unheard", "claude_unheard"}},
       {"fetch_cleaner", {"claude_fetch", "claude_fetch"}},
       {"fetch_cutlery", {"claude_fetch", "claude_fetch"}},
       {"fetch_dirty_plate", {"claude_fetch", "claude_fetch"}},
@@ -319,7 +323,7 @@ TEST(RecordedAnswers, ThatAreMissingAreAnErrorAndNeverANo) {
   EXPECT_THROW(ask(scenario("x", "Bring me the moon."), "claude"), InputError);
   EXPECT_SAYS(message_of<InputError>([] { ask(scenario("heart", "Bring me the heart."), "gpt4"); }),
               "expected recorded or one of claude, claude_clutter, claude_drawn, claude_fetch, claude_paraphrases, "
-              "claude_words, gpt4_released, gpt4_study, got \"gpt4\"");
+              "claude_unheard, claude_words, gpt4_released, gpt4_study, got \"gpt4\"");
   // Nobody was asked what to avoid when bringing a heart.
   EXPECT_THROW(ask(scenario("heart", "Bring me the heart.", "sweep"), "gpt4_released"), MethodError);
 

@@ -256,7 +256,7 @@ TEST(Scenario, AllShippedOnesAreRead) {
   int pick_and_place = 0;
   for (const std::string& id : scenario_ids()) pick_and_place += load_scenario(id).task == "pick_and_place";
   EXPECT_EQ(pick_and_place,
-            187);  // drawn has 100, words 56, q1 9 and as many paraphrased, clutter 6, many_commands 4, q2 two, q3 one
+            191);  // drawn has 100, words 56, q1 9 and as many paraphrased, clutter 6, many_commands 8, q2 two, q3 one
   const Scenario s = load_scenario("heart");
   EXPECT_EQ(s.commands[0].truth.target.product().object_types, std::vector<std::string>{"heart"});
   EXPECT_EQ(s.commands[0].truth.target.product().textures.size(), 83u);  // ALL
@@ -350,7 +350,7 @@ TEST(Scenario, RefusesBadInput) {
   json["answers"] = {{"recorded", "gpt4"}};
   EXPECT_SAYS(refusal(json),
               "mine.json: /answers/recorded: expected one of: claude, claude_clutter, claude_drawn, claude_fetch, "
-              "claude_paraphrases, claude_words, gpt4_released, gpt4_study");
+              "claude_paraphrases, claude_unheard, claude_words, gpt4_released, gpt4_study");
   json = heart();
   json["printed"] = {{"task", "rotate"}};
   EXPECT_SAYS(refusal(json), "mine.json: /printed: unknown member \"task\"");

@@ -190,6 +190,38 @@ TEST(Suite, AVariantMayHaveArmsAndAScenarioAnswersOfItsOwn) {
   EXPECT_SAYS(message_of<InputError>(load), "/variants/alone/arms/0");
 }
 
+TEST(Suite, APresetPlaysTheArmsThatItNamesAndAnArmNamesWhoDoesNot) {
+  const Suite suite = load_suite("few_members");
+  const auto arms = [&](const char* id, const char* preset) {
+    const Design design = preset_design(suite, preset);
+    std::vector<std::string> ids;
+    for (const Arm& arm : suite_scenario(suite, id, Truth::released, &design).tests) ids.push_back(arm.id);
+    return ids;
+  };
+  using Ids = std::vector<std::string>;
+  EXPECT_EQ(arms("heart_members_1", "abstraction"),
+            Ids({"seen_members_1", "new_members_1", "seen_near_members_1", "new_near_members_1"}));
+  EXPECT_EQ(arms("letter_from_the_word_letter_members_2", "abstraction_decisive"),
+            Ids({"seen_near_members_2", "new_decisive_near_members_2", "new_other_near_members_2"}));
+  EXPECT_EQ(arms("letter_from_the_word_letter_members_4", "abstraction_decisive"),
+            Ids({"seen_near_members_4", "new_other_near_members_4"}));
+  EXPECT_EQ(arms("heart_members_1", "abstraction_decisive"), Ids({"seen_near_members_1", "new_other_near_members_1"}));
+  EXPECT_EQ(arms("heart_members_1", "").size(), 5u);
+
+  const Scratch scratch("suite");
+  const auto refusal = [&](const auto& change) {
+    Json json = read_json(data_directory() / "suites/few_members.json");
+    json["id"] = "mine";
+    change(json);
+    write_file(scratch.path / "mine.json", json.dump());
+    return message_of<InputError>([&] { load_suite((scratch.path / "mine.json").string()); });
+  };
+  EXPECT_SAYS(refusal([](Json& json) { json["presets"]["abstraction"]["arms"] = {"old"}; }),
+              "/presets/abstraction/arms/0: no arm of the suite \"old\"");
+  EXPECT_SAYS(refusal([](Json& json) { json["arms"][4]["except"] = {"letter"}; }),
+              "/arms/4/except/0: no scenario of the suite \"letter\"");
+}
+
 TEST(Cells, KeyIsOfTheWholeConfiguration) {
   const auto cells = expand(load_suite("q1"), small_grid(), {}, catalogue());
   const Cell& cell = cells.front();

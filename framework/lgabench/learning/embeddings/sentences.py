@@ -17,7 +17,7 @@ def main():
     sentences = set()
     for scenario in json.loads(ask("list"))["scenarios"]:
         for answers in ("recorded", "gpt4_released", "gpt4_study", "claude", "claude_clutter",
-                        "claude_fetch", "claude_paraphrases", "claude_words", "claude_drawn"):
+                        "claude_fetch", "claude_paraphrases", "claude_words", "claude_drawn", "claude_unheard"):
             for truth in ("released", "printed"):
                 for line in ask("select", scenario["id"], "--answers", answers, "--truth", truth).splitlines():
                     selected = json.loads(line)
