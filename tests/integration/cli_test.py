@@ -357,6 +357,7 @@ class Completion(Case):
     def test_of_commands_options_and_ids(self):
         self.assertEqual(self.completed("re"), ["render", "report"])
         self.assertEqual(self.completed("run", "q1", "--dem"), ["--demos"])
+        self.assertEqual(self.completed("run", "q1", "--scene"), ["--scene-seed"])
         self.assertEqual(self.completed("run", "fac"), ["factorial"])
         self.assertEqual(self.completed("run", "q1", "--methods", "lga,hu"), ["lga,human"])
         self.assertEqual(self.completed("run", "q1", "--scenarios", "red_"), ["red_heart"])

@@ -45,6 +45,10 @@ class BadInput(Case):
             (["q1", "--demos", "10,10"], r"--demos: expected each value once"),
             (["q1", "--episodes=-1"], r"--episodes: .*got -1"),
             (["q1", "--episodes", "0"], r"--episodes: .*got 0"),
+            (["q1", "--scene-seed=-1"], r"--scene-seed: expected a whole number from 0 .*got -1"),
+            (["q1", "--scene-seed", "some"], r"--scene-seed = some"),
+            (["q1", "--preset", "leaderboard", "--scene-seed", "7"], r"--scene-seed: preset leaderboard of q1 is the leaderboard's"),
+            (["clutter", "--preset", "abstraction", "--scene-seed", "7", "--dry-run"], r"--scene-seed: preset abstraction of clutter is the leaderboard's"),
             (["q1", "--seeds", "3:1"], r"--seeds: .*3:1 has 0"),
             (["q1", "--layout", "moon"], r'--layout: no layout "moon", expected one of: cells, continuous, released$'),
             (["q1", "--layout", "table"], r'scenario red_heart \(tabletop\): no layout "table", expected one of: cells, continuous, released'),
@@ -214,6 +218,35 @@ class Presets(Case):
         self.assertEqual(sorted(oracles), [0, 1])
         # The page draws each failed scene as it was played.
         self.assertNotIn("samples another scene", (self.dir / "own/report.html").read_text())
+
+
+class SceneSeed(Case):
+    RUN = ["run", "q1", "--scenarios", "heart", "--methods", "fixture_constant", "--demos", "3", "--seeds", "0", "--episodes", "2",
+           "--plugin-path", FIXTURES / "good"]
+
+    def scenes(self, run):
+        return {json.loads(line)["scene"] for key in self.cells(run)
+                for line in (self.dir / run / "cells" / key / "episodes.jsonl").read_text().splitlines()}
+
+    def test_draws_other_test_scenes_and_the_same_demonstrations(self):
+        self.call(*self.RUN, "--out", "own")
+        shown = {file.name: file.read_bytes() for file in (self.dir / "cache").iterdir()}
+        self.assertTrue(shown)
+        said = self.call(*self.RUN, "--scene-seed", "7", "--out", "other").stderr
+        self.assertIn("--scene-seed 7: other test scenes; demonstrations are the same ones, as the training seeds draw them\n", said)
+        self.assertEqual({file.name: file.read_bytes() for file in (self.dir / "cache").iterdir()}, shown)
+        self.assertFalse(self.scenes("own") & self.scenes("other"))
+        self.assertEqual(json.loads((self.dir / "other/run.json").read_text())["request"]["scene_seed"], 7)
+        self.assertEqual({cell["scene_seed"] for cell, _ in self.cells("other").values()}, {7})
+        self.assertNotIn("--scene-seed", self.call(*self.RUN, "--scene-seed", "7", "--out", "quiet", "--quiet").stderr)
+        self.assert_same_results("other", "quiet")
+        self.assertIn("bit-identical", self.call("verify", "other", "--all", "--plugin-path", FIXTURES / "good").stdout)
+        self.assertIn("scene_seed", self.call("merge", "both", "own", "other", expect=2).stderr)
+        self.assertIn("the runs cannot be compared: no cell played the same scenes in both",
+                      self.call("compare", "own", "other", expect=2).stderr)
+        # The default is the suite's own, and the cell the same.
+        self.call(*self.RUN, "--scene-seed", "0", "--out", "zero")
+        self.assert_same_results("own", "zero")
 
 
 class Determinism(Case):

@@ -108,6 +108,9 @@ int run(const RunArguments& a) {
   const auto [catalogue, plan] = plan_run(a);
   if (const std::string missing = missing_encoder(commands_of(plan)); !missing.empty())
     to_stderr("note: {}\n", missing);
+  if (a.scene_seed && !a.quiet)
+    to_stderr("--scene-seed {}: other test scenes; demonstrations are the same ones, as the training seeds draw them\n",
+              *a.scene_seed);
   if (a.dry_run) return print_forecast(plan, catalogue, forecast(plan, catalogue));
   if (!a.debug.empty()) return debug_cell(plan, catalogue, a.debug);
   if (a.unconfined) to_stderr("--unconfined: methods run as you, with your files\n");

@@ -87,7 +87,8 @@ std::string by_option(const std::string& complaint) {
                                        {"seeds", "--seeds"},
                                        {"selection_errors", "--selection-errors"},
                                        {"train_on", "--train-on"},
-                                       {"episodes", "--episodes"}})
+                                       {"episodes", "--episodes"},
+                                       {"scene_seed", "--scene-seed"}})
     if (complaint.rfind(fmt::format("{}: /{}", command_line_place, member), 0) == 0)
       return option + complaint.substr(complaint.find(": ", complaint.find('/')));
   return complaint;
@@ -102,6 +103,11 @@ void expect_layouts(const Suite& suite, const Words& layouts) {
   for (const std::string& layout : layouts)
     if (std::find(all.begin(), all.end(), layout) == all.end())
       throw InputError("--layout: " + none_named("layout", layout, {there.begin(), there.end()}));
+}
+
+// A preset with a scene seed of its own is one of the board's.
+bool is_boards(const Suite& suite, const std::string& preset) {
+  return !preset.empty() && suite.presets.at(preset).contains("scene_seed");
 }
 
 // The command line's part of the design, checked by the same reader as a suite's file.
@@ -121,6 +127,14 @@ Design design_of(const RunArguments& a, const Suite& suite) {
   if (!a.train_on.empty()) overrides["train_on"] = train_on(a.train_on);
   if (a.episodes) overrides["episodes"] = *a.episodes;
   Design design = preset_design(suite, a.preset);
+  if (a.scene_seed) {
+    if (is_boards(suite, a.preset))
+      throw InputError(fmt::format(
+          "--scene-seed: preset {} of {} is the leaderboard's, whose rows share their scenes; without --preset the "
+          "suite is played, on any scenes",
+          a.preset, suite.id));
+    overrides["scene_seed"] = *a.scene_seed;
+  }
   try {
     design = apply(JsonReader(overrides, command_line_place), design);
   } catch (const InputError& e) {
@@ -238,9 +252,7 @@ PlannedRun plan_run(RunArguments a) {
   plan.confined = !a.unconfined;
   plan.keeps_policies = a.keep_policy;
   plan.quiet = a.quiet;
-  // A preset with a scene seed of its own is one of the board's.
-  const bool is_boards = !a.preset.empty() && suite.presets.at(a.preset).contains("scene_seed");
-  plan.strangers = is_boards ? Strangers::told_nothing : Strangers::told_afterwards;
+  plan.strangers = is_boards(suite, a.preset) ? Strangers::told_nothing : Strangers::told_afterwards;
   return planned;
 }
 
@@ -270,6 +282,9 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
   verb.add_option("--episodes", a.episodes, "Test scenes per arm");
   verb.add_option("--jobs", a.jobs, "Cells to compute at once (default: one per core)")->check(CLI::Range(1, 4096));
   verb.add_option("--timeout", a.timeout_s, "Seconds after which a cell is stopped and counts as failed")
+  verb.add_option("--scene-seed", a.scene_seed,
+                  "Draw other test scenes, from this seed; demonstrations follow --seeds. Not for presets of the "
+                  "leaderboard");
       ->check(within(1, 1e7))
       ->capture_default_str();
   verb.add_option("--memory", a.memory_gib,
@@ -361,6 +376,7 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
            {"--episodes", "N"},
            {"--set", "M.OPTION=VALUE"},
            {"--answers", "SOURCE"},
+           {"--scene-seed", "N"},
            {"--model", "MODEL"},
            {"--cassette", "FILE"},
            {"--max-queries", "N"},
@@ -387,10 +403,11 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
       verb, "Output",
       {{"--out", "DIR"}, {"--tables", ""}, {"--quiet", ""}, {"--json", ""}, {"--cache", "DIR"}, {"--keep-policy", ""}});
   leave_to_help_all(
-      verb, {"--layout",  "--selection-errors", "--train-on", "--model",       "--cassette",    "--max-queries",
-             "--request", "--reply-timeout",    "--ca-file",  "--concurrency", "--truth",       "--humans",
-             "--memory",  "--rehearsal",        "--limit",    "--shard",       "--debug",       "--timeout",
-             "--python",  "--no-reference",     "--fresh",    "--cache",       "--keep-policy", "--unconfined"});
+      verb, {"--layout",      "--scene-seed", "--selection-errors", "--train-on", "--model",       "--cassette",
+             "--max-queries", "--request",    "--reply-timeout",    "--ca-file",  "--concurrency", "--truth",
+             "--humans",      "--memory",     "--rehearsal",        "--limit",    "--shard",       "--debug",
+             "--timeout",     "--python",     "--no-reference",     "--fresh",    "--cache",       "--keep-policy",
+             "--unconfined"});
 }
 
 }  // namespace lgabench::cli

@@ -1,5 +1,6 @@
 // What `run` and `cluster` are asked for, and the run that comes of it.
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ struct RunArguments {
   Words methods, engines, scenarios, layouts, demonstrations, seeds, settings, selection_errors;
   std::vector<fs::path> plugin_path;
   std::optional<int> episodes;
+  std::optional<std::int64_t> scene_seed;
   int jobs = 0, limit = 0, max_queries = -1;  // 0: as many as there are cores, all cells
   double timeout_s = 3600, memory_gib = 0;
   long reply_timeout_s = OpenAiOptions().timeout_s;
