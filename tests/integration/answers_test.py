@@ -499,6 +499,39 @@ class Recorded(Case):
                           self.call(*run, source, expect=2).stderr)
         self.assertFalse((self.dir / "out").exists())
 
+    def test_a_form_or_a_second_set_that_lacks_is_refused_before_the_forecast(self):
+        second = self.dir / "second.json"  # of a sweep, without what to avoid
+        second.write_text(json.dumps({"model": "m", "space": "tabletop", "answers": [
+            {"command": "Sweep the block without touching the pan.", "target": {"object_types": ["block"], "textures": "ALL"}}]}))
+        sweep = "sweep_block_without_touching_pan"
+        for words, says in (
+                (["clutter", "--methods", "lga+meaning=structured"],
+                 r'^lgabench: lga: answers of gpt4_released: expected "structured" for "Bring me the red heart", which meaning=structured asks '
+                 r"for \(scenarios that lack this: red_heart, heart, .*, something_that_looks_like_stone\)\n$"),
+                (["clutter", "--methods", "human,selected_by:lga+meaning=structured,lga", "--scenarios", "heart"],
+                 r"^lgabench: selected_by:lga\S*: answers of gpt4_released: .* \(scenarios that lack this: heart\)\n$"),
+                (["q1", "--methods", "lga", "--scenarios", sweep, "--answers", second],
+                 rf"^lgabench: lga: m: no recorded answer on .* in \"Sweep.* \(scenarios that lack this: {sweep}\)\n$"),
+                (["q1", "--methods", "lga+meaning=structured", "--scenarios", "heart", "--answers", self.write_flat()],
+                 r'^lgabench: lga: answers of flat: expected "structured" for "Bring me the heart\."')):
+            for dry in [], ["--dry-run"]:
+                with self.subTest(words + dry):
+                    done = self.call("run", *words, "--demos", "1", "--seeds", "0", "--out", "out", *dry, expect=2)
+                    self.assertEqual(done.stdout, "")
+                    self.assertRegex(done.stderr, says)
+        self.assertFalse((self.dir / "out").exists())
+        self.call("run", "clutter", "--methods", "lga+meaning=named,human,gcbc_seg", "--dry-run")  # which ask nobody for a meaning
+
+    def write_flat(self):
+        file = self.dir / "flat.json"
+        file.write_text(json.dumps({"model": "m", "space": "tabletop", "answers": [
+            {"command": "Bring me the heart.", "target": {"object_types": ["heart"], "textures": "ALL"}}]}))
+        return file
+
+    def test_scores_name_all_whose_answers_were_used(self):
+        self.assertIn("answers of GPT-4 (released with the code, 2023-07) and GPT-4, version not stated there and Claude (Anthropic, 2026); ",
+                      self.call("select", "--suite", "clutter", "--score", "--scenes", "2").stdout)
+
     def test_select_refuses_options_of_a_server_without_one(self):
         self.assertIn("--model: expected --answers openai or cassette:FILE with it, not recorded",
                       self.call("select", "heart", "--model", "m", expect=2).stderr)

@@ -106,7 +106,7 @@ class AnswersAlone(Board):
 
         # What the answers keep without a policy, beside what the policy makes of it.
         score = entry["score"]
-        self.assertEqual((score["model"], score["asked"], score["questions"]), ("made-up-1", "flat", 2 * 112))
+        self.assertEqual((score["models"], score["asked"], score["questions"]), (["made-up-1"], "flat", 2 * 112))
         alone = {row["group"]: row for row in map(json.loads, self.call(
             "select", "--suite", "tiny", "--score", "--json", "--answers", str(kept)).stdout.splitlines()) if row["asked"] == "flat"}
         self.assertEqual(score["groups"]["all"]["exact_sets"], alone["all"]["exact_sets"])
@@ -123,6 +123,14 @@ class AnswersAlone(Board):
         better["score"]["groups"]["all"]["exact_scenes"] = better["score"]["groups"]["all"]["scenes"] + 1
         (place / "entry.json").write_text(json.dumps(better, indent=1, ensure_ascii=False) + "\n")
         self.assertIn("/score/groups/all/exact_scenes: expected", self.leaderboard("check", expect=1).stderr)
+        older = json.loads(text)  # of before the list
+        last = older["score"].pop("models")[-1]
+        older["score"] = dict(sorted({**older["score"], "model": last}.items()))
+        (place / "entry.json").write_text(json.dumps(older, indent=1, ensure_ascii=False) + "\n")
+        self.assertIn("agrees", self.leaderboard("verify", "--by", "B. Reader").stdout)
+        older["score"]["model"] = "made-up-2"
+        (place / "entry.json").write_text(json.dumps(older, indent=1, ensure_ascii=False) + "\n")
+        self.assertIn("score of the answers: other groups", self.leaderboard("verify", "--by", "B. Reader", expect=2).stderr)
         (place / "entry.json").write_text(text)
 
         # The cells follow from these bytes.
@@ -144,13 +152,22 @@ class AnswersAlone(Board):
         place = self.dir / "board" / self.leaderboard("add", "run/tape", "--entry", "made_up_entry.json").stdout.split()[1]
         score = json.loads((place / "entry.json").read_text())["score"]
         self.assertEqual((score["asked"], score["questions"], score["tokens"]), ("flat", 224, 9 * 224))
-        self.assertIn("made-up-3", score["model"])
+        self.assertIn("made-up-3", score["models"][0])
         self.assertIn("letter T", score["wrong"]["letter"]["missed"])
         self.assertIn("agrees", self.leaderboard("verify", "--by", "B. Reader").stdout)
         fresh = subprocess.run(command_line("leaderboard", "verify", "--fresh", "--by", "B. Reader", "--board", "board"),
                                capture_output=True, text=True, env=self.environment, cwd=self.dir, timeout=300)
         self.assertIn("nobody is asked about other commands (docs/language-models.md)", fresh.stderr)  # whether it agrees is chance
         self.assertEqual(len(server.asked), asked)
+
+    def test_all_whose_answers_a_row_has_are_named(self):
+        self.take_run()
+        self.call("run", "tiny", "--preset", "abstraction", "--methods", "selected_by:lga", "--no-reference", "--out", "run/both")
+        place = self.dir / "board" / self.leaderboard("add", "run/both", "--entry", "me.json").stdout.split()[1]
+        models = json.loads((place / "entry.json").read_text())["score"]["models"]
+        self.assertEqual(models, ["GPT-4 (released with the code, 2023-07)", "GPT-4, version not stated there"])
+        self.leaderboard("build")
+        self.assertIn(" and ".join(models), (self.dir / "board/tiny.html").read_text())
 
     def test_a_copy_of_the_truth_is_taken_and_ranked_in_no_track(self):
         self.take_run()

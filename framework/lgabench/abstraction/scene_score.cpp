@@ -81,6 +81,11 @@ SceneScore score(const Scenario& scenario, int command, const Selection& selecti
   return score;
 }
 
+void add_source(const std::string& source, std::vector<std::string>& all) {
+  all.erase(std::remove(all.begin(), all.end(), source), all.end());
+  all.push_back(source);
+}
+
 bool covers_truth(const std::vector<Hypothesis>& hypotheses, const Scenario& scenario, int command) {
   const Meaning& truth = scenario.commands[static_cast<std::size_t>(command)].truth.target;
   return std::any_of(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& one) {

@@ -25,6 +25,9 @@ SceneScore& operator+=(SceneScore& all, const SceneScore& more);
 SceneScore score(const Scenario& scenario, int command, const Selection& selection, const std::string& layout,
                  std::uint64_t scene_seed, int scenes);
 
+/// Adds who answered to those who did, in the order in which each answered last.
+void add_source(const std::string& source, std::vector<std::string>& all);
+
 /// Whether one of the hypotheses is the command's truth: the same rule, and no pair of the space wrong but those that
 /// the scenario calls undecided.
 bool covers_truth(const std::vector<Hypothesis>& hypotheses, const Scenario& scenario, int command);

@@ -75,11 +75,14 @@ Selection select_meaning(const Command& command, const FeatureSpace& space, Lang
   return signed_by(model, command, before, std::move(selection));
 }
 
-Selection select_as_asked(const Command& command, const FeatureSpace& space, Services& services) {
-  const std::string meaning = services.options.value("meaning", "flat");
+Selection select_as_asked(const std::string& meaning, const Command& command, const FeatureSpace& space,
+                          LanguageModel& model) {
   if (meaning == "named") return select_named(command, space);
-  return meaning == "structured" ? select_meaning(command, space, services.lm)
-                                 : select_features(command, space, services.lm);
+  return meaning == "structured" ? select_meaning(command, space, model) : select_features(command, space, model);
+}
+
+Selection select_as_asked(const Command& command, const FeatureSpace& space, Services& services) {
+  return select_as_asked(services.options.value("meaning", "flat"), command, space, services.lm);
 }
 
 }  // namespace lgabench

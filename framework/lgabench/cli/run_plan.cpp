@@ -224,6 +224,8 @@ PlannedRun plan_run(RunArguments a) {
   plan.cells = expand(suite, design, variation, catalogue);
   if (a.limit != 0 && plan.cells.size() > static_cast<std::size_t>(a.limit))
     plan.cells.resize(static_cast<std::size_t>(a.limit));
+  if (!plan.live && !std::holds_alternative<NoAnswers>(variation.answers))
+    check_forms(plan.cells, catalogue, variation.answers, plan.answers.empty() ? fs::path() : plan.answers[0].path);
   plan.about = suite.about;
   plan.claims = suite.claims;
   plan.request = to_json(design);
@@ -280,11 +282,11 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
                   "Show methods their demonstrations through a perturbation axis: AXIS:LEVEL, or AXIS:any for a level "
                   "drawn for each demonstration; not for the leaderboard");
   verb.add_option("--episodes", a.episodes, "Test scenes per arm");
-  verb.add_option("--jobs", a.jobs, "Cells to compute at once (default: one per core)")->check(CLI::Range(1, 4096));
-  verb.add_option("--timeout", a.timeout_s, "Seconds after which a cell is stopped and counts as failed")
   verb.add_option("--scene-seed", a.scene_seed,
                   "Draw other test scenes, from this seed; demonstrations follow --seeds. Not for presets of the "
                   "leaderboard");
+  verb.add_option("--jobs", a.jobs, "Cells to compute at once (default: one per core)")->check(CLI::Range(1, 4096));
+  verb.add_option("--timeout", a.timeout_s, "Seconds after which a cell is stopped and counts as failed")
       ->check(within(1, 1e7))
       ->capture_default_str();
   verb.add_option("--memory", a.memory_gib,
@@ -374,9 +376,9 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
            {"--selection-errors", "KIND=P,..."},
            {"--train-on", "AXIS"},
            {"--episodes", "N"},
+           {"--scene-seed", "N"},
            {"--set", "M.OPTION=VALUE"},
            {"--answers", "SOURCE"},
-           {"--scene-seed", "N"},
            {"--model", "MODEL"},
            {"--cassette", "FILE"},
            {"--max-queries", "N"},

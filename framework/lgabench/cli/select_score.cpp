@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <lgabench/abstraction/best_product.hpp>
-#include <lgabench/abstraction/named.hpp>
 #include <lgabench/abstraction/scene_score.hpp>
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/core/error.hpp>
@@ -21,19 +20,7 @@
 namespace lgabench::cli {
 namespace {
 
-struct Asking {
-  const char* name;
-  std::function<Selection(const Command&, const FeatureSpace&, LanguageModel&)> select;
-};
-
-const std::vector<Asking>& ways_of_asking() {
-  static const std::vector<Asking> all{{"flat", select_features},
-                                       {"structured", select_meaning},
-                                       {"named", [](const Command& command, const FeatureSpace& space, LanguageModel&) {
-                                          return select_named(command, space);
-                                        }}};
-  return all;
-}
+constexpr const char* ways_of_asking[] = {"flat", "structured", "named"};
 
 // Of one command, or summed over a group of them.
 struct Row {
@@ -60,7 +47,7 @@ struct ScoredCommand {
 // Of one way of asking.
 struct Scores {
   std::vector<ScoredCommand> commands;
-  std::string source;
+  std::vector<std::string> sources;
 };
 
 std::string title_of(const Scenario& scenario, const ScenarioCommand& command, const std::string& arm) {
@@ -79,15 +66,16 @@ std::string arm_of(const Scenario& scenario, int command) {
   return "";
 }
 
-Scores scores_of(const Asking& asking, const Suite& suite, Truth truth, int scenes, const WithAnswers& with_answers) {
+Scores scores_of(const std::string& asking, const Suite& suite, Truth truth, int scenes,
+                 const WithAnswers& with_answers) {
   Scores all;
   for (const std::string& id : suite_scenario_ids(suite, suite.design)) {
     const Scenario scenario = suite_scenario(suite, id, truth);
     with_answers(scenario, [&](LanguageModel& model) {
       Json first;
       for (int i = 0; i < static_cast<int>(scenario.commands.size()); ++i) {
-        const Selection selection = asking.select(scenario.command(i), scenario.space, model);
-        all.source = selection.source;
+        const Selection selection = select_as_asked(asking, scenario.command(i), scenario.space, model);
+        add_source(selection.source, all.sources);
         const Json kept = distribution_json(selection);
         if (i == 0) first = kept;
         const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(i)];
@@ -98,7 +86,7 @@ Scores scores_of(const Asking& asking, const Suite& suite, Truth truth, int scen
                                 arm,
                                 title_of(scenario, command, arm),
                                 command.ambiguous,
-                                {"", asking.name, scored, selection.cost.lm_queries, kept == first ? 0 : 1}});
+                                {"", asking, scored, selection.cost.lm_queries, kept == first ? 0 : 1}});
       }
     });
   }
@@ -189,12 +177,12 @@ void print_misread(const Scores& scores) {
 void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const WithAnswers& with_answers) {
   std::map<std::string, Scores> by_asking;
   std::string left_out;
-  for (const Asking& asking : ways_of_asking()) {
+  for (const char* asking : ways_of_asking) {
     try {
-      by_asking[asking.name] = scores_of(asking, suite, truth, scenes, with_answers);
+      by_asking[asking] = scores_of(asking, suite, truth, scenes, with_answers);
     } catch (const InputError& e) {
-      by_asking.erase(asking.name);
-      left_out += fmt::format("{}: {}\n", asking.name, one_line(e.what()));
+      by_asking.erase(asking);
+      left_out += fmt::format("{}: {}\n", asking, one_line(e.what()));
     }
   }
   std::map<std::string, bool> covered;
@@ -222,18 +210,19 @@ void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const 
   groups.emplace_back("all", [](const ScoredCommand&) { return true; });
   families.emplace_back("all", suite_scenario_ids(suite, suite.design));
 
-  std::string source = "none";
+  std::vector<std::string> sources;
   for (const char* asking : {"structured", "flat"})
-    if (by_asking.count(asking) > 0) source = by_asking[asking].source;
+    if (by_asking.count(asking) > 0)
+      for (const std::string& source : by_asking[asking].sources) add_source(source, sources);
   if (!json)
     to_stdout("answers of {}; {} scenes of each arm\n\n{:<14} {:<11} {:>4}  {:<18}  {:>5}  {:>9}  {:>6}  {:>9}{}\n",
-              source, scenes, "", "asked", "n", "scenes exact", "sets", "precision", "recall", "questions",
-              by_arm ? "  otherwise" : "");
+              sources.empty() ? "none" : fmt::format("{}", fmt::join(sources, " and ")), scenes, "", "asked", "n",
+              "scenes exact", "sets", "precision", "recall", "questions", by_arm ? "  otherwise" : "");
   for (const auto& [group, is_in] : groups)
-    for (const Asking& asking : ways_of_asking()) {
-      const auto scores = by_asking.find(asking.name);
+    for (const char* asking : ways_of_asking) {
+      const auto scores = by_asking.find(asking);
       if (scores == by_asking.end()) continue;
-      Row row{group, asking.name, {}};
+      Row row{group, asking, {}};
       for (const ScoredCommand& command : scores->second.commands)
         if (is_in(command) && !command.ambiguous) row.add(command.row);
       json ? to_stdout("{}\n", canonical(to_json(row, by_arm))) : print(row, by_arm);
@@ -245,9 +234,9 @@ void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const 
       by_arm ? "otherwise: share of them for which something else was selected than for the scenario's first.\n" : "",
       left_out);
   print_coverage(covered, families, json);
-  for (const Asking& asking : ways_of_asking()) {
-    const auto scores = by_asking.find(asking.name);
-    if (scores != by_asking.end() && std::string(asking.name) != "named") print_misread(scores->second);
+  for (const char* asking : ways_of_asking) {
+    const auto scores = by_asking.find(asking);
+    if (scores != by_asking.end() && std::string(asking) != "named") print_misread(scores->second);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <set>
 #include <string_view>
 #include <unordered_set>
 
@@ -117,6 +118,52 @@ AnswerFile check_written(const fs::path& file, const std::vector<std::string>& s
   expect_all_commands(RecordedAnswers{file.string()}, scenarios,
                       [&](const Scenario& s) { return RecordedLanguageModel::of_file(s.space, s.answers_of, file); });
   return {sha256_file(file) + ".json", file, {{"model", model}}};
+}
+
+Answerer::Answerer(const AnswerSource& source, const fs::path& file) : source_(source), file_(file) {
+  const auto* live = std::get_if<LiveAnswers>(&source);
+  if (!live && !std::holds_alternative<CassetteAnswers>(source)) return;
+  cassette_.emplace(file);
+  ChatOptions options;
+  options.model = live ? live->model : cassette_->only_model();
+  replies_ = std::make_unique<ChatLanguageModel>(*cassette_, nullptr, options);
+}
+
+LanguageModel& Answerer::of(const Scenario& scenario, bool to_edit) {
+  if (replies_) return *replies_;
+  if (const auto* recorded = std::get_if<RecordedAnswers>(&source_))
+    return recorded_.emplace(scenario, recorded_source(scenario, recorded->source, to_edit));
+  if (std::holds_alternative<FileAnswers>(source_))
+    return recorded_.emplace(RecordedLanguageModel::of_file(scenario.space, scenario.answers_of, file_));
+  return nobody_;
+}
+
+void check_forms(const std::vector<Cell>& cells, const Catalogue& catalogue, const AnswerSource& answers,
+                 const fs::path& file) {
+  Answerer answerer(answers, file);
+  std::set<std::pair<const Json*, std::string>> seen;  // scenario, row
+  std::string reason;
+  std::vector<std::string> rows, lacking;
+  const auto add = [](const std::string& name, std::vector<std::string>& all) {
+    if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+  };
+  for (const Cell& cell : cells) {
+    if (cell.method.is_reference() || !catalogue.find("method", cell.method.id).questionnaire) continue;
+    if (!seen.insert({cell.scenario.get(), cell.method.name}).second) continue;
+    const Scenario scenario = read_scenario(*cell.scenario, "scenario");
+    try {
+      LanguageModel& model = answerer.of(scenario, cell.method.asks == "edit");
+      for (int c = 0; c < static_cast<int>(scenario.commands.size()); ++c)
+        select_as_asked(cell.method.options.value("meaning", "flat"), scenario.command(c), scenario.space, model);
+    } catch (const Error& e) {
+      if (reason.empty()) reason = e.what();
+      add(cell.method.name, rows);
+      add(scenario.id, lacking);
+    }
+  }
+  if (!lacking.empty())
+    throw InputError(
+        fmt::format("{}: {} (scenarios that lack this: {})", fmt::join(rows, ", "), reason, fmt::join(lacking, ", ")));
 }
 
 std::vector<AnswerFile> read_participants(const fs::path& directory, bool rehearsal, std::vector<Participant>& all) {

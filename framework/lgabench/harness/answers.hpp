@@ -2,13 +2,19 @@
 // and replies beside its cells, named by their SHA-256, so that it can be checked anywhere.
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <lgabench/abstraction/chat_model.hpp>
+#include <lgabench/abstraction/nobody.hpp>
 #include <lgabench/abstraction/participant.hpp>
+#include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/core/json.hpp>
+#include <lgabench/plugin/loader.hpp>
 #include <lgabench/record/answer_source.hpp>
+#include <lgabench/record/cell.hpp>
 
 namespace lgabench {
 
@@ -43,6 +49,29 @@ void drop_other_replies(const std::string& but, const std::filesystem::path& run
 void check_recorded(const RecordedAnswers& answers, const std::vector<std::string>& scenarios);
 /// Likewise of a file that somebody wrote. @throws InputError as read_recorded(), too.
 AnswerFile check_written(const std::filesystem::path& answers, const std::vector<std::string>& scenarios);
+
+/// Whoever answers for a scenario's commands; a cassette answers for all of them.
+class Answerer {
+ public:
+  /// `file`: the cassette or the file of answers; recorded ones need none.
+  Answerer(const AnswerSource& source, const std::filesystem::path& file);
+  /// Until the next call. `to_edit`: as of recorded_source().
+  LanguageModel& of(const Scenario& scenario, bool to_edit = false);
+
+ private:
+  AnswerSource source_;
+  std::filesystem::path file_;
+  std::optional<Cassette> cassette_;
+  std::unique_ptr<ChatLanguageModel> replies_;
+  std::optional<RecordedLanguageModel> recorded_;
+  Nobody nobody_;
+};
+
+/// Asks what the cells' methods declare that they ask, in the form of their option `meaning`. `file`: as Answerer's.
+/// @throws InputError where an answer lacks, its form, or that to the task's second set: names the row and the
+/// scenarios.
+void check_forms(const std::vector<Cell>& cells, const Catalogue& catalogue, const AnswerSource& answers,
+                 const std::filesystem::path& file);
 
 /// Every .json of a directory. @throws InputError as read_participant, for a directory without one, and for two files
 /// of one participant. A file of a rehearsal is refused unless `rehearsal`, which marks all of them.

@@ -1,62 +1,24 @@
 #include <lgabench/leaderboard/answer_score.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <functional>
 #include <limits>
 #include <map>
-#include <memory>
-#include <optional>
 
-#include <lgabench/abstraction/chat_model.hpp>
-#include <lgabench/abstraction/named.hpp>
-#include <lgabench/abstraction/nobody.hpp>
-#include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/abstraction/scene_score.hpp>
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/answers.hpp>
 
 namespace lgabench::leaderboard {
 namespace {
 
 constexpr const char* all = "all";
 constexpr const char* counts[] = {"commands", "exact_sets", "scenes", "exact_scenes", "kept", "meant", "right"};
-
-// Whoever answers for a scenario; a cassette answers for all of them.
-class Answerer {
- public:
-  Answerer(const AnswerSource& source, const fs::path& file) : source_(source), file_(file) {
-    const auto* live = std::get_if<LiveAnswers>(&source);
-    if (!live && !std::holds_alternative<CassetteAnswers>(source)) return;
-    cassette_.emplace(file);
-    ChatOptions options;
-    options.model = live ? live->model : cassette_->only_model();
-    replies_ = std::make_unique<ChatLanguageModel>(*cassette_, nullptr, options);
-  }
-  LanguageModel& of(const Scenario& scenario) {
-    if (replies_) return *replies_;
-    if (const auto* recorded = std::get_if<RecordedAnswers>(&source_))
-      return recorded_.emplace(scenario, recorded_source(scenario, recorded->source));
-    if (std::holds_alternative<FileAnswers>(source_))
-      return recorded_.emplace(RecordedLanguageModel::of_file(scenario.space, scenario.answers_of, file_));
-    return nobody_;
-  }
-
- private:
-  AnswerSource source_;
-  fs::path file_;
-  std::optional<Cassette> cassette_;
-  std::unique_ptr<ChatLanguageModel> replies_;
-  std::optional<RecordedLanguageModel> recorded_;
-  Nobody nobody_;
-};
-
-Selection selected(const std::string& asked, const Command& command, const FeatureSpace& space, LanguageModel& model) {
-  if (asked == "named") return select_named(command, space);
-  return asked == "structured" ? select_meaning(command, space, model) : select_features(command, space, model);
-}
 
 Json to_json(const SceneScore& s) {
   return {
@@ -68,14 +30,14 @@ Json scored(const Installed& installed, const std::string& asked, Answerer answe
   const Setting& setting = installed.setting;
   std::map<std::string, SceneScore> by_scenario;
   SelectionCost cost;
-  std::string model;
+  std::vector<std::string> models;
   for (const Setting::Scenario& played : setting.scenarios) {
     const Scenario scenario = suite_scenario(installed.suite, played.id, Truth::released, &installed.design);
     LanguageModel& answers = answerer.of(scenario);
     for (int i = 0; i < static_cast<int>(scenario.commands.size()); ++i) {
       if (scenario.commands[static_cast<std::size_t>(i)].ambiguous) continue;  // in no mean
-      const Selection selection = selected(asked, scenario.command(i), scenario.space, answers);
-      model = selection.source;
+      const Selection selection = select_as_asked(asked, scenario.command(i), scenario.space, answers);
+      add_source(selection.source, models);
       cost.lm_queries += selection.cost.lm_queries;
       cost.lm_tokens += selection.cost.lm_tokens;
       by_scenario[played.id] +=
@@ -98,7 +60,7 @@ Json scored(const Installed& installed, const std::string& asked, Answerer answe
                    {"scenes", one.scenes},
                    {"kept", one.wrongly_kept},
                    {"missed", one.missed}};
-  return {{"model", model},           {"asked", asked},   {"questions", cost.lm_queries},
+  return {{"models", models},         {"asked", asked},   {"questions", cost.lm_queries},
           {"tokens", cost.lm_tokens}, {"groups", groups}, {"wrong", wrong}};
 }
 
@@ -118,8 +80,14 @@ void expect_score(const JsonReader& score, const Setting& setting) {
     if (const std::string text = reader.string(); text.empty() || text != one_line(text))
       reader.fail("words, in a line");
   };
-  score.only({"model", "asked", "questions", "tokens", "groups", "wrong"});
-  line(score.at("model"));
+  const char* const by = score.has("models") ? "models" : "model";  // of before the list: the last one alone
+  score.only({by, "asked", "questions", "tokens", "groups", "wrong"});
+  if (by == std::string("model"))
+    line(score.at(by));
+  else if (score.at(by).strings().empty())
+    score.at(by).fail("one at least");
+  else
+    for (const JsonReader& model : score.at(by).elements()) line(model);
   if (const std::string asked = score.at("asked").string();
       asked != "flat" && asked != "structured" && asked != "named")
     score.at("asked").fail("flat, structured or named");
@@ -143,6 +111,17 @@ void expect_score(const JsonReader& score, const Setting& setting) {
     for (const char* list : {"kept", "missed"})
       for (const JsonReader& name : one.at(list).elements()) line(name);
   }
+}
+
+std::string models_of(const Json& score) {
+  if (score.contains("model")) return score.at("model");
+  return fmt::format("{}", fmt::join(score.at("models").get<std::vector<std::string>>(), " and "));
+}
+
+Json as_before_the_list(Json score) {
+  score["model"] = score.at("models").back();
+  score.erase("models");
+  return score;
 }
 
 double scenes_exact(const Json& score) {

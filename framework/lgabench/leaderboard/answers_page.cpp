@@ -61,10 +61,7 @@ Grid models_grid(const NamedTable& table, const std::vector<Scored>& all) {
   for (const Scored& one : all) {
     const Json& score = one.entry->score;
     const Json& sum = score.at("groups").at("all");
-    Grid::Row row{
-        {},
-        {Span(one.label), Span(score.at("model").get<std::string>()), Span(score.at("asked").get<std::string>())},
-        false};
+    Grid::Row row{{}, {Span(one.label), Span(models_of(score)), Span(score.at("asked").get<std::string>())}, false};
     for (const std::string& group : groups)
       row.cells.emplace_back(Span::number(
           score.at("groups").contains(group) ? share(score.at("groups").at(group), "exact_scenes", "scenes") : "–"));
