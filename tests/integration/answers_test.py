@@ -214,7 +214,7 @@ class Cassettes(Asking):
     def test_what_is_no_cassette_of_one_model_is_refused(self):
         run = ["run", self.suite, *RUN, "--out", "out", "--answers"]
         for word in ("gpt5", "gpt4"):
-            self.assertIn("--answers: expected recorded, claude, claude_clutter, claude_drawn, claude_fetch, claude_paraphrases, claude_unheard, claude_words, gpt4_released, gpt4_study, openai, none, cassette:FILE or FILE.json",
+            self.assertIn("--answers: expected recorded, claude, claude_clutter, claude_drawn, claude_fetch, claude_paraphrases, claude_track, claude_unheard, claude_words, gpt4_released, gpt4_study, openai, none, cassette:FILE or FILE.json",
                           self.call(*run, word, expect=2).stderr)
         (self.dir / "empty.jsonl").write_text("")
         self.assertIn("expected replies of one model, it has none", self.call(*run, "cassette:empty.jsonl", expect=2).stderr)
@@ -531,6 +531,23 @@ class Recorded(Case):
     def test_scores_name_all_whose_answers_were_used(self):
         self.assertIn("answers of GPT-4 (released with the code, 2023-07) and GPT-4, version not stated there and Claude (Anthropic, 2026); ",
                       self.call("select", "--suite", "clutter", "--score", "--scenes", "2").stdout)
+
+    def test_one_model_answers_the_whole_track_in_both_forms(self):
+        def answers(source):
+            document = json.loads((DATA / f"answers/{source}.json").read_text())
+            return {(one.get("space", document.get("space")), one["command"]):
+                    {name: value for name, value in one.items() if name not in ("space", "rationale")} for one in document["answers"]}
+
+        track = answers("claude_track")
+        for source in "claude", "claude_clutter", "claude_fetch", "claude_words", "claude_drawn":
+            for command, one in answers(source).items():
+                if command in track or source in ("claude_words", "claude_drawn"):
+                    self.assertEqual({name: value for name, value in track[command].items() if name in one}, one, command)
+        for suite in "clutter", "few_members", "many_commands", "fetch", "words", "drawn", "knowledge":
+            self.call("run", suite, "--methods", "lga,lga+meaning=structured", "--answers", "claude_track", "--dry-run")
+        said = self.call("select", "--suite", "clutter", "--score", "--scenes", "2", "--answers", "claude_track").stdout
+        self.assertTrue(said.startswith("answers of Claude (Anthropic, 2026); "))
+        self.assertRegex(said, r"\nall +structured +14 ")
 
     def test_select_refuses_options_of_a_server_without_one(self):
         self.assertIn("--model: expected --answers openai or cassette:FILE with it, not recorded",
