@@ -388,7 +388,7 @@ TEST(Standings, TiesShareARankAndOnlyASignificantlyBetterEntryComesBefore) {
   EXPECT_DOUBLE_EQ(*all[1].precision, .5);
 }
 
-TEST(Standings, EachRankingRanksItsOwnRowsAndAnswersOnlyNobody) {
+TEST(Standings, EachRankingRanksItsOwnRowsAndAnswersOnlyMethodsOnFrozenAnswers) {
   const Setting setting = small_setting();
   std::vector<Entry> entries{replayed_entry(setting, "a", .8), replayed_entry(setting, "b", .3),
                              replayed_entry(setting, "c", .5)};
@@ -410,6 +410,29 @@ TEST(Standings, EachRankingRanksItsOwnRowsAndAnswersOnlyNobody) {
   EXPECT_NEAR(*all[2].gap_closed, 0, 1e-12);
   EXPECT_NEAR(*all[1].gap_closed, (*all[1].in_track - *all[2].in_track) / (*all[0].in_track - *all[2].in_track), 1e-12);
   EXPECT_FALSE(standings(table).front().gap_closed);
+  // Methods that share frozen answers are ranked among each other, and those that select nothing.
+  const auto selects = [](Entry& entry, const char* provenance) {
+    for (const auto& scenario : entry.phi.items())
+      for (Json& command : scenario.value()[0]) command["selection"]["provenance"] = provenance;
+  };
+  for (Entry& entry : entries) selects(entry, "recorded"), entry.identity.answers = RecordedAnswers{"claude_track"};
+  entries[1].identity.answers = RecordedAnswers{};
+  const Track frozen{Track::abstraction, {"test"}, "claude_track"};
+  std::map<std::string, std::string> why;
+  const auto tell = [&] {
+    for (const Standing& s : standings(table, frozen, Ranking::answers_only))
+      why[s.entry->identity.row.id] = s.rank ? std::to_string(*s.rank) : s.not_ranked;
+    return why;
+  };
+  EXPECT_EQ(tell()["factorial"], "other answers than \"claude_track\"");
+  EXPECT_EQ(tell()["human"], "1");
+  selects(entries[1], "none");
+  EXPECT_EQ(tell()["factorial"], "3");
+  selects(entries[1], "rule");
+  EXPECT_EQ(tell()["factorial"], "other answers than \"claude_track\"") << "a rule of its own";
+  EXPECT_NE(words_of(Ranking::answers_only, &frozen).find("(\"claude_track\")"), std::string::npos);
+  const Track open_answers{Track::abstraction, {"test"}};
+  EXPECT_NE(words_of(Ranking::answers_only, &open_answers).find("no row has a rank"), std::string::npos);
   EXPECT_EQ(rankings_of({}), (std::vector{Ranking::any_policy, Ranking::papers_network}));
   EXPECT_EQ(rankings_of({Track::open, {}}), std::vector{Ranking::any_policy});
   EXPECT_EQ(rankings_of({Track::abstraction, {"test"}}), std::vector{Ranking::answers_only});
@@ -505,6 +528,14 @@ TEST(Tracks, AreReadAndRefuseAPresetInTwo) {
   EXPECT_EQ(tracks.at("s-l").kind, Track::open);
   write_file(board.path / "tracks.json", R"({"abstraction": {"s-l": []}, "open": ["s-l"]})");
   EXPECT_SAYS(message_of<InputError>([&] { read_tracks(board.path); }), "/open/0: expected each preset in one track");
+  for (const auto& [frozen, complaint] :
+       {std::pair(R"({"s-l": "claude"})", "/frozen/s-l: expected a preset of the abstraction track"),
+        {R"({"s-a": "none"})", "/frozen/s-a: expected answers that are shipped"}}) {
+    write_file(board.path / "tracks.json", fmt::format(R"({{"abstraction": {{"s-a": []}}, "frozen": {}}})", frozen));
+    EXPECT_SAYS(message_of<InputError>([&] { read_tracks(board.path); }), complaint);
+  }
+  write_file(board.path / "tracks.json", R"({"abstraction": {"s-a": []}, "frozen": {"s-a": "claude_track"}})");
+  EXPECT_EQ(read_tracks(board.path).at("s-a").answers, "claude_track");
   const Tracks other{{small_setting().name(), {Track::abstraction, {"hard", "near"}}}};
   EXPECT_SAYS(message_of<InputError>([&] { expect_arms(board.path, other, small_setting()); }),
               "tracks.json: /abstraction/q1-board/1: expected an arm that the preset has, got \"near\"");

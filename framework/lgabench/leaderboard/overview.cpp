@@ -49,7 +49,7 @@ TableCell number_cell(const Standing& s, const std::string& suite, std::size_t r
   return cell;
 }
 
-// A suite in which nobody is ranked is one for diagnosis, and no column; in answers only nobody is.
+// A suite in which nobody is ranked is one for diagnosis, and no column; in answers only some tables have no ranks.
 bool is_column(const NamedTable& table, Ranking ranking) {
   return table.ranking == ranking && !table.standings.empty() &&
          (ranking == Ranking::answers_only ||

@@ -47,7 +47,7 @@ Grid short_grid(const NamedTable& table, const fs::path& board) {
 }
 
 void add_table(Section& section, const NamedTable& table, const fs::path& board = "") {
-  section.add<Paragraph>(reading, {{what_was_played(table.setting) + " " + words_of(table.ranking)}});
+  section.add<Paragraph>(reading, {{what_was_played(table.setting) + " " + words_of(table.ranking, &table.track)}});
   if (!table.standings.empty()) section.add<Grid>(reading, short_grid(table, board));
   if (auto note = below_random_note(table.standings)) section.add<Paragraph>(reading, std::move(*note));
   if (auto waiting = waiting_grid(table, board)) section.add<Grid>(reading, std::move(*waiting));

@@ -158,6 +158,24 @@ void add_ranks(std::vector<Standing>& all, const report::SharedResamples& resamp
   }
 }
 
+// Where its Selections come from.
+std::set<std::string> provenances_of(const Entry& entry) {
+  std::set<std::string> all;
+  for (const auto& scenario : entry.phi.items())
+    for (const Json& list : scenario.value())
+      for (const Json& command : list) all.insert(command.at("selection").at("provenance").get<std::string>());
+  return all;
+}
+
+// In the abstraction track: truths are public, so that nothing but a method on given answers can be ranked.
+std::string why_not_in_track(const Entry& entry, const Track& track) {
+  if (track.answers.empty()) return "no ranks: the truths are public";
+  std::set<std::string> asked = provenances_of(entry);
+  asked.erase("none");
+  if (asked.empty() || to_string(entry.identity.answers) == track.answers) return "";
+  return fmt::format("other answers than \"{}\"", track.answers);
+}
+
 }  // namespace
 
 std::string why_not_ranked(const Entry& entry) {
@@ -167,12 +185,8 @@ std::string why_not_ranked(const Entry& entry) {
   if (entry.fresh() < 0) return "differs on fresh scenes";
   if (!entry.was_replayed()) return "not yet replayed";
   if (entry.replay_differed()) return "a replay differed";
-  for (const auto& scenario : entry.phi.items())
-    for (const Json& list : scenario.value())
-      for (const Json& command : list) {
-        const std::string provenance = command.at("selection").at("provenance");
-        if (provenance == "truth" || provenance == "simulated_edit") return "the truth stands in for people";
-      }
+  const std::set<std::string> provenances = provenances_of(entry);
+  if (provenances.count("truth") + provenances.count("simulated_edit") > 0) return "the truth stands in for people";
   if (entry.has_answers_as_submitted()) return as_submitted;
   return "";
 }
@@ -194,7 +208,7 @@ std::vector<Standing> standings(const std::vector<const Entry*>& table, const Tr
     standing.entry = entry;
     standing.not_ranked = why_not_ranked(*entry);
     if (standing.not_ranked.empty() && track.kind == Track::abstraction)
-      standing.not_ranked = "no ranks: the truths are public";
+      standing.not_ranked = why_not_in_track(*entry, track);
     add_rates(standing);
     add_costs(standing);
     rates.push_back(rates_of(*entry));

@@ -347,7 +347,7 @@ report::Document suite_document(const std::string& suite, const std::vector<Name
   for (const NamedTable& table : tables) {
     const std::string id = fmt::format("table{}", ++number);
     Section section{id, capital(to_string(table.ranking))};
-    section.add<Paragraph>(reading, {{what_was_played(table.setting) + " " + words_of(table.ranking)}});
+    section.add<Paragraph>(reading, {{what_was_played(table.setting) + " " + words_of(table.ranking, &table.track)}});
     if (!axes_of(table.setting).empty())
       section.add<Paragraph>(
           reading,

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <variant>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/record/answer_source.hpp>
 
 namespace lgabench::leaderboard {
 
@@ -13,7 +15,7 @@ Tracks read_tracks(const fs::path& board) {
   if (!fs::exists(fs::symlink_status(file))) return {};
   const Json json = read_json(file, Links::refused);
   const JsonReader reader(json, file.string());
-  reader.only({"abstraction", "open"});
+  reader.only({"abstraction", "frozen", "open"});
   Tracks tracks;
   const auto add = [&tracks](const JsonReader& place, const std::string& preset, Track track) {
     if (!tracks.emplace(preset, std::move(track)).second) place.fail("each preset in one track");
@@ -23,6 +25,16 @@ Tracks read_tracks(const fs::path& board) {
     if (!presets.json().is_object()) presets.fail("an object: arms by preset");
     for (const auto& [preset, ignored] : presets.json().items())
       add(presets.at(preset), preset, {Track::abstraction, presets.at(preset).strings()});
+  }
+  if (reader.has("frozen")) {
+    const JsonReader presets = reader.at("frozen");
+    for (const auto& [preset, ignored] : presets.json().items()) {
+      const auto found = tracks.find(preset);
+      if (found == tracks.end()) presets.at(preset).fail("a preset of the abstraction track");
+      found->second.answers = presets.at(preset).string();
+      if (!std::holds_alternative<RecordedAnswers>(read_answer_source(found->second.answers)))
+        presets.at(preset).fail("answers that are shipped");
+    }
   }
   if (reader.has("open"))
     for (const JsonReader& preset : reader.at("open").elements()) add(preset, preset.string(), {Track::open, {}});
@@ -56,12 +68,24 @@ std::vector<Ranking> rankings_of(const Track& track) {
   return {Ranking::any_policy, Ranking::papers_network};
 }
 
-std::string words_of(Ranking ranking) {
-  if (ranking == Ranking::answers_only)
+std::string words_of(Ranking ranking, const Track* track) {
+  if (ranking == Ranking::answers_only) {
+    const std::string ranks =
+        !track ? "The truth of these commands is public, so answers to them prove nothing: only methods that share one "
+                 "frozen file of answers have ranks, in the suites in which there is one."
+        : track->answers.empty()
+            ? "The truth of these commands is public, so answers to them prove nothing; no file of answers is frozen "
+              "for this table, and no row has a rank."
+            : fmt::format(
+                  "The truth of these commands is public, so answers to them prove nothing, and what is ranked is the "
+                  "method: rows that share one frozen file of answers (\"{}\"), and those that select nothing. Other "
+                  "answers have no rank.",
+                  track->answers);
     return "Answers only: rows differ in what is selected alone, and the shipped policy learns and acts. \"Where it "
            "decides\" is success in the test scenes in which an abstraction decides; \"gap closed\" is the part of the "
-           "distance there from the mask of any object to the true mask. The truth of these commands is public, so "
-           "answers to them prove nothing, and no row has a rank.";
+           "distance there from the mask of any object to the true mask. " +
+           ranks;
+  }
   if (ranking == Ranking::papers_network) return "Paper's network: only rows that learn with it are ranked here.";
   return "Any policy: all that acts is ranked together.";
 }

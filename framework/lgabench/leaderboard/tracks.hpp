@@ -16,6 +16,7 @@ inline constexpr const char* tracks_file = "tracks.json";
 struct Track {
   enum Kind { reproduction, abstraction, open } kind = reproduction;
   std::vector<std::string> arms{};  // of the abstraction track: where an abstraction decides
+  std::string answers{};            // likewise: whose frozen answers the rows share that are ranked; "": nobody is
 };
 
 /// By preset, as "clutter-abstraction".
@@ -37,7 +38,7 @@ std::vector<Ranking> rankings_of(const Track& track);
 /// The setting's.
 Track track_of(const Tracks& tracks, const Setting& setting);
 
-/// What a page says of it.
-std::string words_of(Ranking ranking);
+/// What a page says of it, of a table in that track. Of several tables together: without a track.
+std::string words_of(Ranking ranking, const Track* track = nullptr);
 
 }  // namespace lgabench::leaderboard
