@@ -84,6 +84,7 @@ class Tabletop final : public Environment {
     result.truncated = !motion.came_to_rest;
     result.failure = judge(scene_, reached, motion);
     result.is_success = result.failure == failure::none;
+    if (motion.taken != no_body) result.taken = scene_.objects[static_cast<std::size_t>(motion.taken)].instance_id;
     result.recoverable = !result.truncated && result.failure != failure::left_workspace && went_wrong_ == failure::none;
     return result;
   }

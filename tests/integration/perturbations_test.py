@@ -136,5 +136,75 @@ class Perturbations(case.BesideOneRun):
         self.assertIn("mine.json", refusal("all", [0]))
 
 
+class Instructions(case.BesideOneRun):
+    """The axis `instruction`: who hears the words, who does not, and who has no answer to them."""
+    small = ("run", "perturbations", "--preset", "instruction", "--scenarios", "many_hearts", "--episodes", EPISODES,
+             "--demos", "2", "--seeds", "0", "--engines", "kinematic", "--set", "*.epochs=20")
+    run_of_class = (*small, "--methods", "lga,factorial+scenes=truth+input=object_mask")
+
+    def setUp(self):
+        super().setUp()
+        if self is not self.first:
+            self.copy_first("run")
+
+    def cell_of(self, method):
+        [cell] = [path.parent for path in self.dir.glob("run/cells/*/cell.json")
+                  if json.loads(path.read_text())["method"]["id"] == method]
+        scenario = json.loads((cell / "cell.json").read_text())["scenario"]
+        return cell, scenario, {(e["arm"], e["index"]): e for e in lines(cell / "episodes.jsonl")}
+
+    def test_scenes_are_the_controls_and_every_episode_tells_what_it_was_told_and_took(self):
+        self.assert_matches_schemas("run")
+        for method in ("lga", "factorial", "oracle"):
+            cell, scenario, episodes = self.cell_of(method)
+            controls = {e["index"]: e for e in lines(cell / "perturbed.jsonl") if e["axis"] is None}
+            for e in lines(cell / "perturbed.jsonl"):
+                for part in ("objects", "physics", "rgb", "ids", "instances", "control"):
+                    self.assertEqual(e[part], controls[e["index"]][part])
+            for (arm, _), e in episodes.items():
+                told = scenario["commands"][e["told"]]
+                self.assertEqual(told.get("arm"), arm if arm in ("instruction_1", "instruction_2") else None)
+                self.assertEqual(e["told"] == e["command"], arm == "control")
+                self.assertTrue(e["took"] == "own" if e["success"] else e["took"] in ("own", "other", "third", "none"))
+            if method == "oracle":
+                self.assertEqual({e["took"] for e in episodes.values()}, {"own"})
+
+    def test_who_reads_no_words_acts_alike_and_has_exactly_no_use_of_language(self):
+        _, _, episodes = self.cell_of("factorial")
+        for (arm, index), e in episodes.items():
+            self.assertEqual((e["action"], e["took"]), tuple(episodes["control", index][of] for of in ("action", "took")))
+        summary = json.loads((self.dir / "run/summary.json").read_text())
+        use = {c["method"]: c["levels"][2]["use_of_language"]["difference"] for c in summary["perturbations"]}
+        self.assertEqual(use["factorial+input=object_mask+scenes=truth"], 0)
+        self.assertGreater(use["lga"], 0)
+        self.assertIn("use of language", (self.dir / "run/report.md").read_text())
+
+    def test_lga_is_told_what_was_selected_for_the_words_that_were_given(self):
+        cell, scenario, _ = self.cell_of("lga")
+        perturbed = {(e["arm"], e["index"]): e for e in lines(cell / "perturbed.jsonl")}
+        for index in range(EPISODES):
+            for part in ("words", "answers", "selection"):
+                self.assertNotEqual(perturbed["instruction_3", index][part], perturbed["control", index][part])
+        self.assertEqual({arm for arm, _ in perturbed}, {"control", "instruction_1", "instruction_3"},
+                         "for nonsense nothing was selected, and nothing is played")
+
+    def test_an_answer_to_the_scenario_is_none_to_the_words_and_a_missing_one_fails_the_cell(self):
+        answers = json.loads((case.BUILD / "share/lgabench/answers/claude_instruction.json").read_text())["answers"]
+        hearts = {"object_types": ["heart"], "textures": "ALL"}
+        of_scenario = {"scenario": "many_hearts", "command": "Bring me the heart.", "target": hearts}
+
+        def status(entries):
+            self.dir.joinpath("mine.json").write_text(json.dumps({"model": "me", "space": "tabletop", "answers": entries}))
+            self.call(*self.small, "--methods", "lga", "--no-reference", "--answers", "mine.json", "--out", "other",
+                      "--fresh", expect=None)
+            return self.cells("other")
+
+        [(cell, done)] = status([*answers, of_scenario]).values()
+        self.assertEqual(done["status"], "done")
+        [selection] = self.dir.glob("other/cells/*/selection.json")
+        said = [c["selection"]["target"] for c in json.loads(selection.read_text())["commands"]]
+        self.assertGreater(len({json.dumps(one) for one in said}), 5, "and not the scenario's to all of them")
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -1,8 +1,14 @@
 // Perturbation axes: what each changes and leaves alone, nested levels, and that a dead or a leaking axis is caught.
 #include <algorithm>
+#include <cctype>
 #include <map>
+#include <regex>
 #include <set>
+#include <sstream>
 
+#include <fmt/format.h>
+
+#include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/abstraction/selection_errors.hpp>
 #include <lgabench/cell/hosted_axes.hpp>
@@ -282,7 +288,7 @@ TEST(Perturbations, AScenarioCarriesWhatThePluginsOfItsArmsDeclare) {
 TEST(Perturbations, ASuiteNamesThemInALineEach) {
   const Suite suite = load_suite("perturbations");
   const Scenario whole = suite_scenario(suite, "heart", Truth::released);
-  EXPECT_EQ(whole.tests.size(), 1 + perturbation_ids().size() * 4);
+  EXPECT_EQ(whole.tests.size(), 1 + (perturbation_ids().size() - 1) * 4) << "but instruction, of another preset";
   EXPECT_EQ(whole.tests[1].id, "distractors_1");
   const Design smoke = preset_design(suite, "smoke");
   const Scenario small = suite_scenario(suite, "heart", Truth::released, &smoke);
@@ -291,6 +297,93 @@ TEST(Perturbations, ASuiteNamesThemInALineEach) {
               other = test_scene(whole, "continuous", "light_colour_4", 0, 5);
   EXPECT_EQ(to_json(control)["objects"], to_json(other)["objects"]);
   EXPECT_FALSE(to_json(load_suite("q1").design).contains("perturbations")) << "other suites stay as they are";
+}
+
+// A world of several commands with all levels of the axis, as the preset has it.
+Scenario instructed_world(const std::string& id = "many_hearts") {
+  const Suite suite = load_suite("perturbations");
+  const Design design = preset_design(suite, "instruction");
+  return suite_scenario(suite, id, Truth::released, &design.perturbations);
+}
+
+const ScenarioCommand& given(const Scenario& scenario, const Scene& scene) {
+  return scenario.commands.at(static_cast<std::size_t>(command_given(scene, scenario, {})));
+}
+
+bool in_view(const Scene& scene, const ScenarioCommand& command, bool target) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& object) {
+    return object.role != role::goal && (object.role == role::target) == target && means(command, object);
+  });
+}
+
+TEST(Instruction, GivesOtherWordsInTheControlsScenes) {
+  for (const char* world : {"many_hearts", "many_vessels", "many_letters", "many_vowels"}) {
+    const Scenario scenario = instructed_world(world);
+    ASSERT_EQ(scenario.tests.size(), 4u);
+    std::set<std::string> others;
+    for (int i = 0; i < 40; ++i) {
+      SCOPED_TRACE(fmt::format("{} {}", world, i));
+      const auto scene = [&](int level) {
+        const std::string arm = level == 0 ? "control" : arm_of({"instruction", level});
+        return test_scene(scenario, "continuous", arm, 0, i);
+      };
+      const Scene control = scene(0);
+      for (int level = 1; level <= 3; ++level) {
+        EXPECT_EQ(to_json(scene(level))["objects"], to_json(control)["objects"]);
+        EXPECT_EQ(scene(level).command, control.command);
+      }
+      EXPECT_EQ(command_given(control, scenario, {}), control.command);
+      EXPECT_EQ(given(scenario, scene(1)).utterance, "");
+      EXPECT_EQ(given(scenario, scene(2)).arm, "instruction_2");
+      const ScenarioCommand& other = given(scenario, scene(3));
+      EXPECT_TRUE(other.seen && other.arm.empty());
+      EXPECT_TRUE(in_view(control, other, false)) << other.utterance;
+      EXPECT_FALSE(in_view(control, other, true)) << other.utterance;
+      others.insert(other.utterance);
+    }
+    EXPECT_GT(others.size(), 4u) << "each of several commands is the other one";
+  }
+}
+
+TEST(Instruction, NonsenseCanBeReadAloudAndHoldsNoWordOfTheWorlds) {
+  const Scenario scenario = instructed_world();
+  std::string known;
+  for (const auto* names : {&scenario.space.object_types, &scenario.space.textures})
+    for (const std::string& name : *names) known += " " + name;
+  std::set<std::string> sentences;
+  for (const ScenarioCommand& command : scenario.commands)
+    if (command.arm.empty())
+      known += " " + command.utterance;
+    else if (command.arm == "instruction_2")
+      sentences.insert(command.utterance);
+  EXPECT_EQ(sentences.size(), 8u);
+  for (const std::string& sentence : sentences) {
+    EXPECT_TRUE(std::regex_match(sentence, std::regex("[A-Z][a-z]+( [a-z]+){3}\\."))) << sentence;
+    std::string lower = sentence.substr(0, sentence.size() - 1);
+    lower.front() = static_cast<char>(std::tolower(lower.front()));
+    std::istringstream words(lower);
+    for (std::string word; words >> word;) {
+      EXPECT_TRUE(std::regex_match(word, std::regex("([^aeiou][aeiou]){3}[^aeiou]"))) << word;
+      EXPECT_EQ(known.find(word), std::string::npos) << word;
+    }
+  }
+}
+
+TEST(Instruction, IsAnsweredByItsWordsAloneAndWrittenOnce) {
+  const Scenario scenario = instructed_world();
+  EXPECT_EQ(scenario.answers_of, "");
+  EXPECT_EQ(read_scenario(scenario.json, "again.json").json, scenario.json);
+  RecordedLanguageModel lm(scenario, scenario.recorded);
+  for (std::size_t i = 0; i < scenario.commands.size(); ++i)
+    EXPECT_TRUE(lm.knows(scenario.command(static_cast<int>(i)))) << scenario.commands[i].utterance;
+  EXPECT_FALSE(load_scenario("many_hearts").answers_of.empty()) << "without the axis";
+}
+
+TEST(Instruction, IsRefusedWhereNoOtherCommandIsDemonstratedAndIsNotOfAll) {
+  EXPECT_SAYS(refusal({{"instruction", 1}}),
+              "/tests/1/perturbation: instruction: expected several commands that are demonstrated");
+  for (const PerturbationAxis* axis : axes_named("all")) EXPECT_NE(axis->id, "instruction");
+  EXPECT_EQ(instructing_axis(load_scenario("many_hearts")), nullptr);
 }
 
 }  // namespace

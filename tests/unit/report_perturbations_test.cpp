@@ -84,6 +84,46 @@ TEST(PerturbationCurves, PairEachLevelWithTheControl) {
   EXPECT_EQ(curve["levels"][3]["inputs"], 20);
 }
 
+// Of 20 episodes, as many of each in the order of `takings`.
+std::vector<std::string> took(std::array<int, 4> counts) {
+  std::vector<std::string> all;
+  for (std::size_t what = 0; what < counts.size(); ++what)
+    all.insert(all.end(), static_cast<std::size_t>(counts[what]), takings[what]);
+  return all;
+}
+
+TEST(PerturbationCurves, SayWhatALevelOfInstructionTookAndHowMuchLanguageWasUsed) {
+  FabricatedRun run;
+  Spec hears = perturbed("lga", 18, {{"instruction", {0, 0, 2}}}),
+       deaf = perturbed("gcbc_seg", 12, {{"instruction", {12, 12, 12}}});
+  hears.arms[0].took = took({18, 1, 1, 0}), hears.arms[3].took = took({2, 14, 1, 3});
+  hears.arms[1].took = hears.arms[2].took = took({0, 0, 0, 20});
+  for (auto& arm : deaf.arms) arm.took = took({12, 4, 3, 1});
+  run.add(hears);
+  run.add(deaf);
+  const report::Report report = report::write_report(run.save().path);
+  const Json summary = read_json(run.path / "summary.json"), curve = curve_of(summary, "lga", "instruction");
+  EXPECT_EQ(curve["levels"][2]["name"], "another command");
+  EXPECT_EQ(curve["control"]["took"], Json({{"own", 18}, {"other", 1}, {"third", 1}}));
+  EXPECT_EQ(curve["levels"][2]["took"], Json({{"own", 2}, {"other", 14}, {"third", 1}, {"none", 3}}));
+  EXPECT_EQ(curve["levels"][0]["took"], Json({{"none", 20}}));
+  EXPECT_FALSE(curve["levels"][0].contains("use_of_language") || curve["levels"][1].contains("use_of_language"));
+  const Json use = curve["levels"][2]["use_of_language"];
+  EXPECT_DOUBLE_EQ(use["difference"], 13 / 20.) << "14 took it, 1 did in the control";
+  EXPECT_GT(use["low"], .3);
+  EXPECT_LT(use["high"], .9);
+  EXPECT_EQ(curve_of(summary, "gcbc_seg", "instruction")["levels"][2]["use_of_language"]["difference"], 0);
+  const report::Grid& grid = grid_named(report, "perturbations");
+  const auto column = std::find(grid.heads.begin(), grid.heads.end(), "use of language");
+  ASSERT_NE(column, grid.heads.end());
+  const auto& cell = grid.rows.front().cells.at(static_cast<std::size_t>(column - grid.heads.begin()));
+  EXPECT_EQ(cell.spans.front().text, "+0.65");
+  FabricatedRun without;
+  const report::Report plain = report::write_report(small(without).save().path);
+  const auto& heads = grid_named(plain, "perturbations").heads;
+  EXPECT_EQ(std::find(heads.begin(), heads.end(), "use of language"), heads.end());
+}
+
 TEST(PerturbationCurves, CorrectOverAllLevelsOfAllAxesOfARow) {
   FabricatedRun run;
   report::write_report(small(run).save().path);

@@ -36,11 +36,12 @@ class FabricatedRun : public TemporaryDirectory {
 
   struct Arm {
     std::string name;
-    int won = 0;                   // of 20: the first
-    std::vector<int> commands{0};  // given in turn
-    double action = 0.5;           // each of the 12 numbers; NaN: gave none
-    Json perturbation{};           // as in a scenario; null: none
-    int unchanged = 0;             // of 20: the first, whose input is the control's
+    int won = 0;                      // of 20: the first
+    std::vector<int> commands{0};     // given in turn
+    double action = 0.5;              // each of the 12 numbers; NaN: gave none
+    Json perturbation{};              // as in a scenario; null: none
+    int unchanged = 0;                // of 20: the first, whose input is the control's
+    std::vector<std::string> took{};  // of each episode; empty: not told
   };
 
   struct Spec {
@@ -191,6 +192,7 @@ class FabricatedRun : public TemporaryDirectory {
                      {"failure", won ? "none" : s.failure},
                      {"attribution", won || s.attribution.empty() ? Json() : Json(s.attribution)},
                      {"action", std::isnan(arm.action) ? Json() : Json(std::vector<double>(12, arm.action))}};
+        if (!arm.took.empty()) episode["took"] = arm.took.at(i);
         if (s.inputs_seen >= 0) episode["input_seen"] = static_cast<int>(i) < s.inputs_seen;
         episodes += canonical(episode) + '\n';
       }

@@ -42,7 +42,7 @@ RecordedAnswer read_answer(const JsonReader& entry, const FeatureSpace& space, c
   entry.only(members);
   RecordedAnswer answer{space.id,
                         entry.has("scenario") ? line(entry.at("scenario")) : "",
-                        line(entry.at("command")),
+                        entry.at("command").json() == "" ? "" : line(entry.at("command")),
                         read_feature_set(entry.at("target"), space),
                         {},
                         {},

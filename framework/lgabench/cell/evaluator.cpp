@@ -18,7 +18,9 @@ Episode play(Environment& environment, const TestScene& test, const Actor& actor
   if (test.perception) observation = test.perception(observation, scene);
   try {
     const Move move = actor(environment, scene, observation);
-    episode.failure = environment.step(move.action).failure;  // refuses one that is not executable()
+    const StepResult result = environment.step(move.action);  // refuses one that is not executable()
+    episode.failure = result.failure;
+    episode.taken = result.taken;
     episode.action = as_stored(environment.action_space(), move.action);
     episode.input_seen = move.input_seen;
   } catch (const MethodError& e) {

@@ -140,7 +140,8 @@ std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell, C
     const Perception perception = perception_of(scenario, arm, cell.scenes_of_seed());
     for (int i = 0; i < cell.episodes; ++i) {
       Scene scene = test_scene(scenario, cell.layout, arm.id, cell.scene_seed, i, cell.scenes_of_seed());
-      const bool empty = course == Course::nothing_selected || selected.nothing_for(scene.command);
+      const bool empty = course == Course::nothing_selected ||
+                         selected.nothing_for(command_given(scene, scenario, cell.scenes_of_seed()));
       const View view = view_of(scenario, scene, cell.scenes_of_seed());
       scenes.push_back({std::move(scene), perception, empty, view});
     }
@@ -163,17 +164,35 @@ std::vector<Instruction> true_instructions(const Scenario& scenario) {
 // What the policy is told in a scene: with the errors of its arm's perturbation.
 Instruction told_in(const Scene& scene, const Scenario& scenario, const Cell& cell,
                     const std::vector<Instruction>& instructions) {
-  Instruction told = instructions.at(static_cast<std::size_t>(scene.command));
+  const int command = command_given(scene, scenario, cell.scenes_of_seed());
+  Instruction told = instructions.at(static_cast<std::size_t>(command));
   const Arm& arm = scenario.arm(scene.arm);
   if (!arm.perturbation) return told;
   for (const PerturbationAxis* axis : axes_of(scenario, *arm.perturbation)) {
     if (!axis->selection_errors) continue;
     const double p = axis->selection_errors(arm.perturbation->level);
-    told.selection = lgabench::with_errors(std::move(told.selection), scenario, scene.command, SelectionErrors{p, p},
+    told.selection = lgabench::with_errors(std::move(told.selection), scenario, command, SelectionErrors{p, p},
                                            perturbation_stream(axis->id, scene, cell.scenes_of_seed()),
                                            find_environment(scenario.environment).goal_type());
   }
   return told;
+}
+
+// Where an axis gives other commands: what each episode took, in the scene's own control as in every arm.
+void note_takings(const Scenario& scenario, const Cell& cell, const std::vector<TestScene>& tests,
+                  std::vector<Episode>& episodes) {
+  const PerturbationAxis* const axis = instructing_axis(scenario);
+  for (std::size_t i = 0; axis && i < episodes.size(); ++i) {
+    const Scene& scene = tests.at(i).scene;
+    const int other = axis->other(scene, scenario, perturbation_stream(axis->id, scene, cell.scenes_of_seed()));
+    episodes[i].told = command_given(scene, scenario, cell.scenes_of_seed());
+    episodes[i].took = "none";
+    for (const SceneObject& object : scene.objects)
+      if (object.instance_id == episodes[i].taken)
+        episodes[i].took = object.role == role::target                                         ? "own"
+                           : means(scenario.commands[static_cast<std::size_t>(other)], object) ? "other"
+                                                                                               : "third";
+  }
 }
 
 // Hash of what the policy's last act() read; "" where it does not tell.
@@ -209,8 +228,9 @@ Actor noting(const Actor& actor, const Scenario& scenario, const Cell& cell, con
                          "",
                          target ? target->scale : 1};
     const Instruction told = told_in(scene, scenario, cell, selected.instructions);
+    const int command = command_given(scene, scenario, cell.scenes_of_seed());
     one.hashes = parts_of({scene, environment.bodies(), control}, seen,
-                          policy ? &selected.instructions.at(static_cast<std::size_t>(scene.command)) : nullptr,
+                          policy ? &selected.instructions.at(static_cast<std::size_t>(command)) : nullptr,
                           policy ? &told : nullptr);
     all.push_back(one);
     const Move move = actor(environment, scene, seen);
@@ -388,6 +408,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
     if (showing) showing->played(tests[static_cast<std::size_t>(n) - 1]);
   });
   expect_declared(perturbed, episodes, policy != nullptr, axes_in(scenario));
+  note_takings(scenario, cell, tests, episodes);
   auto* const hosted = dynamic_cast<MethodInProcesses*>(method.get());
   const Files of_method = hosted ? hosted->files() : Files();  // from now on the method may be told the truth
   const std::string kept = policy_text(job, policy.get());

@@ -85,7 +85,7 @@ Recorded recorded(const fs::path& run, const std::string& named) {
     if (episode.arm != arm || episode.index != index) continue;
     if (episode.action.empty())
       throw InputError(fmt::format("replay: {} ended without an action: {}", named, episode.failure));
-    return {cell, scenario, episode, selection_of(directory, scenario, episode.command)};
+    return {cell, scenario, episode, selection_of(directory, scenario, episode.given())};
   }
   throw InputError(fmt::format("replay: {} has no episode {} in arm {}", directory.string(), index, arm));
 }

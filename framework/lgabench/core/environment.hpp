@@ -30,6 +30,7 @@ struct StepResult {
   bool is_success = false;
   bool recoverable = true;          // false: no further action can make it a success
   Failure failure = failure::none;  // none exactly if is_success
+  std::uint8_t taken = 0;           // the instance that was moved on purpose; 0: none, or it is not told
 };
 
 /// A scene's object as the engine has it.

@@ -146,7 +146,7 @@ std::vector<std::string> perturbation_ids(const PluginAxes& more) {
 std::vector<const PerturbationAxis*> axes_named(const std::string& id, const PluginAxes& more) {
   std::vector<const PerturbationAxis*> axes;
   for (const PerturbationAxis& axis : perturbation_axes())
-    if (id == axis.id || id == all_axes) axes.push_back(&axis);
+    if (id == axis.id || (id == all_axes && !axis.other)) axes.push_back(&axis);
   if (const PerturbationAxis* added = find_axis(more, id); axes.empty() && added) axes.push_back(added);
   if (axes.empty()) throw InputError(none_named("axis", id, perturbation_ids(more)));
   return axes;
@@ -226,6 +226,35 @@ void expect_shown(const JsonReader& perturbation, const std::vector<const Pertur
     if (axis->look && !has_views)
       perturbation.fail(fmt::format("an axis that leaves the view as it is ({} does not): environment {} has one alone",
                                     axis->id, environment));
+}
+
+const PerturbationAxis* instructing_axis(const Scenario& scenario) {
+  for (const Arm& arm : scenario.tests)
+    if (arm.perturbation)
+      for (const PerturbationAxis* axis : axes_of(scenario, *arm.perturbation))
+        if (axis->other) return axis;
+  return nullptr;
+}
+
+int command_given(const Scene& scene, const Scenario& scenario, std::optional<std::uint64_t> training_seed) {
+  const std::optional<Perturbation>& perturbation = scenario.arm(scene.arm).perturbation;
+  if (!perturbation) return scene.command;
+  for (const PerturbationAxis* axis : axes_of(scenario, *perturbation)) {
+    if (!axis->other) continue;
+    RandomStream stream = perturbation_stream(axis->id, scene, training_seed);
+    std::vector<int> added;
+    for (std::size_t i = 0; i < scenario.commands.size(); ++i)
+      if (scenario.commands[i].arm == scene.arm) added.push_back(static_cast<int>(i));
+    return added.empty() ? axis->other(scene, scenario, stream)
+                         : added[stream.below(static_cast<std::uint32_t>(added.size()))];
+  }
+  return scene.command;
+}
+
+bool means(const ScenarioCommand& command, const SceneObject& object) {
+  const std::vector<FeatureSet>& sets = command.truth.target.sets;
+  return std::any_of(sets.begin(), sets.end(),
+                     [&object](const FeatureSet& set) { return set.contains(object.object_type, object.texture); });
 }
 
 std::string arm_of(const Perturbation& perturbation) {

@@ -52,6 +52,10 @@ struct PerturbationAxis {
   /// What bodies change() may ask for, which engines are told before. Null: as they are.
   std::function<BodyVariants(int level)> bodies = nullptr;
   bool rewords = false;  // gives the scenario's command in the words of that level (ScenarioCommand::wording)
+  /// Another command that is demonstrated: its words are given in place of the scene's own. Null: the words stay.
+  std::function<int(const Scene&, const Scenario&, RandomStream)> other = nullptr;
+  /// What is given in place of both at that level: commands of no meaning, which a scenario's arm adds (add_words()).
+  std::function<std::vector<std::string>(int level)> words = nullptr;
   /// Why scenes of the scenario cannot have it at that level, in a few words; "" where they can. Null: all can.
   std::function<std::string(const Scenario&, int level)> lacks = nullptr;
   bool named = false;  // its levels are kinds without an order: no curve, no area
@@ -110,6 +114,13 @@ PluginAxes read_plugin_axes(const JsonReader& scenario);
 /// alone.
 void expect_shown(const JsonReader& perturbation, const std::vector<const PerturbationAxis*>& axes,
                   const std::string& environment, bool has_views);
+/// The axis of the scenario's arms that gives other commands (PerturbationAxis::other), nullptr where none does. It is
+/// no part of `all`.
+const PerturbationAxis* instructing_axis(const Scenario& scenario);
+/// The command whose words are given in the scene: its own, but for such an axis. `training_seed`: as in SceneRequest.
+int command_given(const Scene& scene, const Scenario& scenario, std::optional<std::uint64_t> training_seed);
+/// Whether an object of that type and texture is in what is meant, whichever of several it says.
+bool means(const ScenarioCommand& command, const SceneObject& object);
 /// "AXIS_LEVEL": an arm's name.
 std::string arm_of(const Perturbation& perturbation);
 

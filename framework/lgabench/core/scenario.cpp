@@ -33,7 +33,6 @@ ScenarioCommand read_command(const JsonReader& reader, const Scenario& scenario)
   command.truth.provenance = Provenance::truth;
   command.truth.source = "true distribution";
   command.truth.asked_as = command.utterance;
-  if (command.truth.target.empty()) reader.at("truth").fail("at least one object type and one texture");
   if (scenario.second && !command.truth.second)
     reader.at("truth").fail(fmt::format("\"{}\" for {}", scenario.second->id, scenario.task));
   if (reader.has("seen")) command.seen = reader.at("seen").boolean();
@@ -63,14 +62,48 @@ void expect_wordings(const JsonReader& commands, const Scenario& scenario) {
   }
 }
 
-// Of the test arms, the one that a command names.
+// What the arm's axis gives in place of its commands; none where it leaves them.
+std::vector<std::string> words_of(const Scenario& scenario, const Arm& arm) {
+  if (arm.perturbation)
+    for (const PerturbationAxis* axis : axes_of(scenario, *arm.perturbation))
+      if (axis->words) return axis->words(arm.perturbation->level);
+  return {};
+}
+
+// Of the test arms, the one that a command names. Where its axis gives commands, these mean nothing.
 void expect_arms(const JsonReader& commands, const Scenario& scenario) {
   std::vector<std::string> unseen;
   for (const Arm& arm : scenario.tests)
     if (arm.unseen) unseen.push_back(arm.id);
-  for (const JsonReader& command : commands.elements())
-    if (command.has("arm") && std::count(unseen.begin(), unseen.end(), command.at("arm").string()) == 0)
-      command.at("arm").fail(fmt::format("an arm with \"unseen\": true ({})", fmt::join(unseen, ", ")));
+  const std::vector<JsonReader> all = commands.elements();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const ScenarioCommand& command = scenario.commands[i];
+    const auto gives = [&](const Arm& arm) { return arm.id == command.arm && !words_of(scenario, arm).empty(); };
+    const bool added = std::any_of(scenario.tests.begin(), scenario.tests.end(), gives);
+    if (all[i].has("arm") && !added && std::count(unseen.begin(), unseen.end(), command.arm) == 0)
+      all[i].at("arm").fail(fmt::format("an arm with \"unseen\": true ({})", fmt::join(unseen, ", ")));
+    if (command.truth.target.empty() != added)
+      all[i].at("truth").fail(added ? "nothing, of words without a meaning"
+                                    : "at least one object type and one texture");
+  }
+}
+
+// Adds what the arms' axes give, but what is there: the scenario was written with it. Answers are those of the words
+// alone: looked up by the scenario, they would be the same whatever is said.
+void add_words(Scenario& scenario) {
+  if (!instructing_axis(scenario)) return;
+  scenario.json["answers_of"] = scenario.answers_of = "";
+  const Json nothing{{"target", {{"object_types", Json::array()}, {"textures", Json::array()}}}};
+  for (const Arm& arm : scenario.tests) {
+    const auto is_there = [&arm](const ScenarioCommand& command) { return command.arm == arm.id; };
+    if (std::any_of(scenario.commands.begin(), scenario.commands.end(), is_there)) continue;
+    for (const std::string& utterance : words_of(scenario, arm)) {
+      scenario.json["commands"].push_back(
+          {{"utterance", utterance}, {"truth", nothing}, {"seen", false}, {"arm", arm.id}});
+      const JsonReader added(scenario.json["commands"].back(), scenario.id);
+      scenario.commands.push_back(read_command(added, scenario));
+    }
+  }
 }
 
 double read_probability(const JsonReader& reader) {
@@ -219,6 +252,7 @@ Scenario read_scenario(const Json& json, const std::string& file) {
   if (s.commands_of("train").empty()) reader.at("commands").fail("at least one seen command");
   s.json = json;
   keep_axes_of_arms(s);
+  add_words(s);
   return s;
 }
 

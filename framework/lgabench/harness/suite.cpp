@@ -215,12 +215,17 @@ Suite load_suite(const std::string& id) {
     if (!reader.at("train").json().is_object()) reader.at("train").fail("an object");
     suite.train = reader.at("train").json();
   }
+  std::vector<std::string> played = suite.design.scenarios;  // by the suite or one of its presets
+  for (const Json& preset : json.value("presets", Json::object()))
+    if (preset.is_object())
+      for (const Json& scenario : preset.value("scenarios", Json::array()))
+        if (scenario.is_string()) played.push_back(scenario.get<std::string>());
   if (reader.has("near_miss")) {
     reader.at("near_miss").only(suite.design.scenarios);
     suite.near_miss = reader.at("near_miss").json();
   }
   if (reader.has("scenes")) {
-    reader.at("scenes").only(suite.design.scenarios);
+    reader.at("scenes").only(played);
     suite.scenes = reader.at("scenes").json();
     for (const auto& [scenario, own_members] : suite.scenes.items())
       if (!own_members.is_object()) reader.at("scenes").at(scenario).fail("an object");
@@ -232,7 +237,7 @@ Suite load_suite(const std::string& id) {
       one_of(reader.at("paraphrases").at(scenario), "scenario", scenario_ids());
   }
   if (reader.has("answers")) {
-    reader.at("answers").only(suite.design.scenarios);
+    reader.at("answers").only(played);
     suite.answers = reader.at("answers").json();
     for (const auto& [scenario, ignored] : suite.answers.items())
       one_of(reader.at("answers").at(scenario), "answers", json_names(data_directory() / "answers", none_to_list));

@@ -8,6 +8,7 @@ PerturbationAxis distractors();
 PerturbationAxis object_size();
 PerturbationAxis friction_mass();
 PerturbationAxis paraphrase();
+PerturbationAxis instruction();
 PerturbationAxis light_intensity();
 PerturbationAxis light_direction();
 PerturbationAxis light_colour();

@@ -18,6 +18,8 @@ Json to_json(const Episode& e) {
             {"action", e.action.empty() ? Json() : Json(e.action)},
             {"attribution", e.attribution.empty() ? Json() : Json(e.attribution)}};
   if (e.input_seen) json["input_seen"] = *e.input_seen;
+  if (!e.took.empty()) json["took"] = e.took;
+  if (e.told) json["told"] = *e.told;
   return json;
 }
 
@@ -43,6 +45,12 @@ Episode read_episode(const JsonReader& reader) {
     }
   }
   if (reader.has("input_seen")) e.input_seen = reader.at("input_seen").boolean();
+  if (reader.has("told")) e.told = static_cast<int>(reader.at("told").integer(0, most));
+  if (reader.has("took")) {
+    e.took = reader.at("took").string();
+    if (std::find(takings.begin(), takings.end(), e.took) == takings.end())
+      reader.at("took").fail(fmt::format("{}", fmt::join(takings, ", ")));
+  }
   return e;
 }
 

@@ -15,6 +15,10 @@ namespace lgabench {
 /// seen as it is, to the abstraction where it succeeds with the true mask, else to the policy.
 constexpr std::array<const char*, 3> attributions{"abstraction", "policy", "perception"};
 
+/// What an episode took where an axis gives other commands (PerturbationAxis::other): what the scene's own command
+/// means, what the other one means, something else, or nothing.
+constexpr std::array<const char*, 4> takings{"own", "other", "third", "none"};
+
 struct Episode {
   std::string arm;
   int index = 0, command = 0;  // within the arm; of the scenario's commands
@@ -23,9 +27,13 @@ struct Episode {
   Action action{};                   // what was carried out; empty where the actor gave none
   std::string attribution{};         // of a failure; "" where it is not known
   std::optional<bool> input_seen{};  // Policy::seen_in_training() of the action
+  std::string took{};                // one of takings; "" where no axis gives other commands
+  std::optional<int> told{};         // there, the command whose words were given
+  std::uint8_t taken = 0;            // StepResult::taken. Not on disk
   std::string error{};               // of a method_error: what was thrown. Not on disk: its words may hold an address
 
   bool success() const { return failure == failure::none; }
+  int given() const { return told.value_or(command); }  // the command whose words were given
 };
 
 Json to_json(const Episode& episode);

@@ -91,7 +91,7 @@ Json page_data(const Material& material) {
         outcomes += outcome_letter(e, words);
         blamed += attribution_letter(e);
         hashes.push_back(e.scene);
-        given.push_back(e.command);
+        given.push_back(e.given());
         if (!e.action.empty() && pictures.scenes.count(e.scene) != 0)
           actions[std::to_string(i)] = places_of(cell.environment, e.action);
         if (const auto end = pictures.ends.find(end_key(cell, arm, i, cell.engine)); end != pictures.ends.end())

@@ -46,11 +46,49 @@ std::string arm_of(const CellResult& cell, const std::string& axis, int level) {
   return "";
 }
 
-PerturbationCurve::Level level_of(const RunResults& run, const PerturbationCurve& curve, const Row& row) {
+void count(const std::vector<Episode>& episodes, std::map<std::string, int>& took) {
+  for (const Episode& e : episodes)
+    if (!e.took.empty()) ++took[e.took];
+}
+
+// Counts what was taken, and compares scene by scene how often it was what the other command means.
+Change use_of_language(const RunResults& run, const PerturbationCurve& curve, PerturbationCurve::Level& level,
+                       std::map<std::string, int>& in_control) {
+  std::map<std::string, Outcomes> differences;  // by scenario
+  for (const CellResult& cell : run.cells) {
+    const auto there = cell.episodes.find(arm_of(cell, curve.axis, level.level));
+    if (!is_cell_of(cell, curve) || there == cell.episodes.end()) continue;
+    const std::vector<Episode>&control = cell.episodes.at(cell.arms.front()), &all = there->second;
+    count(control, in_control);
+    count(all, level.took);
+    std::vector<std::string> scenes;
+    std::vector<double> values;
+    for (std::size_t i = 0; i < std::min(all.size(), control.size()); ++i) {
+      scenes.push_back(control[i].scene);
+      values.push_back((all[i].took == "other") - (control[i].took == "other"));
+    }
+    differences[cell.scenario].add(cell.participant, std::move(scenes), std::move(values));
+  }
+  Samples samples;
+  for (const auto& [scenario, outcomes] : differences) samples.push_back(outcomes.sample());
+  return samples.empty()
+             ? Change()
+             : paired_change(samples, fmt::format("report/use_of_language/{}/{}/{}/{}/{}", curve.layout, curve.engine,
+                                                  curve.method, curve.demonstrations, level.level));
+}
+
+PerturbationCurve::Level level_of(const RunResults& run, PerturbationCurve& curve, const Row& row) {
   PerturbationCurve::Level level;
   level.level = row.perturbation->level;
-  if (const auto axis = axis_of(run, curve.axis); axis && level.level <= axis->most())
+  if (const auto axis = axis_of(run, curve.axis); axis && level.level <= axis->most()) {
     level.name = one_line(axis->levels[static_cast<std::size_t>(level.level) - 1]);
+    if (axis->other) {
+      std::map<std::string, int> in_control;
+      const Change use = use_of_language(run, curve, level, in_control);
+      if (axis->words(level.level).empty()) level.use_of_language = use;
+      curve.took = in_control;
+    }
+  }
   level.success = *row.success;
   level.interval = row.interval;
   level.change = {row.shift->difference, row.shift->interval, row.shift->p};
@@ -141,6 +179,11 @@ void correct(std::vector<PerturbationCurve>& curves) {
   }
 }
 
+Json change_json(const Change& change) {
+  return {
+      {"difference", change.difference}, {"low", change.interval.low}, {"high", change.interval.high}, {"p", change.p}};
+}
+
 // Those of one table: the rows come arm by arm.
 std::vector<PerturbationCurve> curves_of(const RunResults& run, const Table& table) {
   std::vector<PerturbationCurve> curves;
@@ -209,15 +252,11 @@ std::vector<PerturbationCurve> perturbation_curves(const RunResults& run, const 
 
 Json to_json(const PerturbationCurve& curve) {
   Json levels = Json::array();
-  for (const PerturbationCurve::Level& level : curve.levels)
+  for (const PerturbationCurve::Level& level : curve.levels) {
     levels.push_back({{"level", level.level},
                       {"name", level.name},
                       {"success", level.success},
-                      {"change",
-                       {{"difference", level.change.difference},
-                        {"low", level.change.interval.low},
-                        {"high", level.change.interval.high},
-                        {"p", level.change.p}}},
+                      {"change", change_json(level.change)},
                       {"p_holm", level.p_holm ? Json(*level.p_holm) : Json()},
                       {"lost", level.lost},
                       {"gained", level.gained},
@@ -225,6 +264,11 @@ Json to_json(const PerturbationCurve& curve) {
                       {"unchanged_inputs", level.inputs.unchanged},
                       {"inputs", level.inputs.of},
                       {"row", level.row}});
+    if (!level.took.empty()) levels.back()["took"] = level.took;
+    if (level.use_of_language) levels.back()["use_of_language"] = change_json(*level.use_of_language);
+  }
+  Json control{{"success", curve.control}, {"row", curve.control_row ? Json(*curve.control_row) : Json()}};
+  if (!curve.took.empty()) control["took"] = curve.took;
   Json area;
   if (curve.area)
     area = {{"relative", curve.area->relative}, {"low", curve.area->interval.low}, {"high", curve.area->interval.high}};
@@ -236,7 +280,7 @@ Json to_json(const PerturbationCurve& curve) {
           {"demonstrations", curve.demonstrations},
           {"axis", curve.axis},
           {"named", curve.named},
-          {"control", {{"success", curve.control}, {"row", curve.control_row ? Json(*curve.control_row) : Json()}}},
+          {"control", control},
           {"levels", levels},
           {"tests", curve.tests},
           {"area", area},

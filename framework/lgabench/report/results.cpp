@@ -37,6 +37,7 @@ void read_episodes(const fs::path& file, CellResult& cell) {
     if (std::find(cell.arms.begin(), cell.arms.end(), e.arm) == cell.arms.end())
       reader.at("arm").fail(fmt::format("an arm of the scenario ({})", fmt::join(cell.arms, ", ")));
     reader.at("command").integer(0, static_cast<long long>(cell.commands.size()) - 1);
+    if (e.told) reader.at("told").integer(0, static_cast<long long>(cell.commands.size()) - 1);
     reader.at("index").integer(0, cell.episodes_per_arm - 1);
     if (!e.success() && std::find(words.begin(), words.end(), e.failure) == words.end())
       reader.at("failure").fail(fmt::format("none, {}", fmt::join(words, ", ")));

@@ -120,6 +120,37 @@ TableCell inputs_cell(const Curve& curve) {
   return inputs_cell(all.unchanged, all.of);
 }
 
+// Of what the episodes of a level took: "0.12, 0.80, 0.05, 0.03" in the order of `takings`.
+TableCell took_cell(const std::map<std::string, int>& took) {
+  int all = 0;
+  for (const auto& [what, n] : took) all += n;
+  std::vector<std::string> shares;
+  for (const char* const what : takings)
+    if (all > 0) shares.push_back(fixed(took.count(what) > 0 ? static_cast<double>(took.at(what)) / all : 0));
+  return Span::number(fmt::format("{}", fmt::join(shares, ", ")));
+}
+
+// Of the level that gives another command; empty where none does.
+TableCell use_cell(const Material& material, const Curve& curve) {
+  for (const Curve::Level& level : curve.levels) {
+    if (!level.use_of_language) continue;
+    const auto place = [&](const char* member) {
+      return place_of(material, curve, level, fmt::format("use_of_language/{}", member));
+    };
+    TableCell cell(Span::number(change(level.use_of_language->difference), place("difference")));
+    for (Span& span : interval_spans(level.use_of_language->interval, place("low"), place("high"), change))
+      cell.spans.push_back(std::move(span));
+    return cell;
+  }
+  return {};
+}
+
+bool gives_other_commands(const std::vector<Part>& all) {
+  return std::any_of(all.begin(), all.end(), [](const Part& part) {
+    return std::any_of(part.curves.begin(), part.curves.end(), [](const Curve* curve) { return !curve->took.empty(); });
+  });
+}
+
 // Tables.
 
 // `by_row`: grouped by the row, which a narrow terminal needs; else by the part, the row's name in a column.
@@ -143,6 +174,8 @@ Grid curves_grid(const Material& material, const std::vector<Part>& all, bool by
   head("axis", 'l');
   head("control", 'r');
   for (const int level : levels) head(std::to_string(level), 'r');
+  const bool language = gives_other_commands(all);
+  if (language) head("use of language", 'r');
   for (const char* text : {"area", "first significant loss", "unchanged input"}) head(text, 'r');
   for (const Part& part : all)
     for (const Curve* curve : part.curves) {
@@ -153,6 +186,7 @@ Grid curves_grid(const Material& material, const std::vector<Part>& all, bool by
       row.cells.emplace_back(curve->axis);
       row.cells.push_back(control_cell(material, *curve));
       for (const int level : levels) row.cells.push_back(level_cell(material, *curve, level));
+      if (language) row.cells.push_back(use_cell(material, *curve));
       row.cells.push_back(area_cell(material, *curve));
       row.cells.push_back(loss_cell(material, *curve));
       row.cells.push_back(inputs_cell(*curve));
@@ -193,6 +227,12 @@ Grid levels_grid(const Material& material, const std::vector<Part>& all) {
   grid.heads = {"method", "axis",   "level",       "which is",     "success",        "change",
                 "lost",   "gained", "McNemar’s p", "p after Holm", "unchanged input"};
   grid.align = "llllrrrrrrrr";
+  const bool language = gives_other_commands(all);
+  if (language) {
+    grid.heads.emplace_back("took its own, the other’s, a third, none");
+    grid.heads.emplace_back("the same in the control");
+    grid.align += "rr";
+  }
   for (const Part& part : all)
     for (const Curve* curve : part.curves)
       for (const Curve::Level& level : curve->levels) {
@@ -214,6 +254,8 @@ Grid levels_grid(const Material& material, const std::vector<Part>& all) {
               level.p_holm ? p_cell(*level.p_holm, place("p_holm")) : TableCell(),
               curve->kind == "reference" ? TableCell() : inputs_cell(level.inputs.unchanged, level.inputs.of)},
              curve->kind == "reference"});
+        if (!language) continue;
+        for (const auto* took : {&level.took, &curve->took}) grid.rows.back().cells.push_back(took_cell(*took));
       }
   return grid;
 }
@@ -275,8 +317,12 @@ Section perturbations(const Material& material) {
                   "is that under the curve from the control to the last level, as a share of what it would be "
                   "had nothing been lost{}; there is no mean over axes, which differ in what a level is. "
                   "Unchanged input: episodes in which all that the policy was given is the control’s, to the "
-                  "bit.",
-                  tests, any_named ? " (levels that are kinds have none)" : "")}});
+                  "bit.{}",
+                  tests, any_named ? " (levels that are kinds have none)" : "",
+                  gives_other_commands(all)
+                      ? " Use of language: the share that took what the other command means where that was "
+                        "given, minus the share that took it in the control."
+                      : "")}});
   std::vector<Part> with_areas;
   for (const Part& part : all)
     if (Part some = part.with_areas(); !some.curves.empty()) with_areas.push_back(std::move(some));

@@ -148,6 +148,10 @@ struct PerturbationCurve {
     double p_mcnemar = 1;          // exact, of these episodes
     UnchangedInputs inputs;
     std::size_t row = 0;  // of summary.json
+    /// Where an axis gives other commands: episodes by what they took (Episode::took), and of the level that gives
+    /// another command, the share that took what it means minus the same share in the control.
+    std::map<std::string, int> took;
+    std::optional<Change> use_of_language;
 
     bool is_loss() const { return p_holm && *p_holm <= alpha && change.difference < 0; }
   };
@@ -162,6 +166,7 @@ struct PerturbationCurve {
   bool named = false;                      // levels without an order
   double control = 0;                      // success, in the scenarios that have the axis
   std::optional<std::size_t> control_row;  // of summary.json; none where other scenarios lack the axis
+  std::map<std::string, int> took;         // in the control, likewise
   std::vector<Level> levels;               // ascending
   std::optional<Area> area;  // none of a named axis or a reference row, nor where the control hardly ever succeeds
   int tests = 0;             // among which p_holm is
