@@ -193,14 +193,14 @@ class Instructions(case.BesideOneRun):
         hearts = {"object_types": ["heart"], "textures": "ALL"}
         of_scenario = {"scenario": "many_hearts", "command": "Bring me the heart.", "target": hearts}
 
-        def status(entries):
+        def status(entries, out, expect):
             self.dir.joinpath("mine.json").write_text(json.dumps({"model": "me", "space": "tabletop", "answers": entries}))
-            self.call(*self.small, "--methods", "lga", "--no-reference", "--answers", "mine.json", "--out", "other",
-                      "--fresh", expect=None)
-            return self.cells("other")
+            self.call(*self.small, "--methods", "lga", "--no-reference", "--answers", "mine.json", "--out", out, expect=expect)
+            [(_, said)] = self.cells(out).values()
+            return said
 
-        [(cell, done)] = status([*answers, of_scenario]).values()
-        self.assertEqual(done["status"], "done")
+        self.assertEqual(status([a for a in answers if a["command"]], "lacking", 1)["status"], "failed")
+        self.assertEqual(status([*answers, of_scenario], "other", 0)["status"], "done")
         [selection] = self.dir.glob("other/cells/*/selection.json")
         said = [c["selection"]["target"] for c in json.loads(selection.read_text())["commands"]]
         self.assertGreater(len({json.dumps(one) for one in said}), 5, "and not the scenario's to all of them")

@@ -246,7 +246,7 @@ TEST(Perturbations, WhatThereIsNotIsRefusedInOneLine) {
               "/tests/1/perturbation: no axis \"light_color\" (did you mean \"light_colour\"?)");
   EXPECT_SAYS(refusal({{"moon", 1}}),
               "/tests/1/perturbation: no axis \"moon\", expected one of: distractors, object_size, friction_mass, "
-              "paraphrase, light_intensity");
+              "paraphrase, instruction, light_intensity");
   EXPECT_SAYS(refusal({{"light_colour", 5}}),
               "/tests/1/perturbation/light_colour: expected a level from 1 to 4 (10 %; 20 %");
   EXPECT_SAYS(refusal({{"all", 0}}), "/tests/1/perturbation/all: expected a level from 1 to 4");
