@@ -108,6 +108,14 @@ tests_of tree all || echo failed""")
         self.assertRegex(done.stdout, r"\nall: seconds of a process by program, 1 in 3 tests; the longest test\n"
                                       r" +1  sleep, 2 tests; 1 Slow.one\n +0  cli_test.py, 1 tests; 0 integration.Class\n")
 
+    def test_a_test_that_fails_beside_others_alone(self):
+        tests = "add_test(Fails false)\n", "add_test(Once bash -c \"test -e ../once || ! touch ../once\")\n"
+        for some, status in ((tests[1:], 0), (tests, 1)):
+            done = self.of("mkdir tree; cat >tree/CTestTestfile.cmake <<'END'\n" + "".join(some) + "END\ntests_of tree all --parallel 2")
+            self.assertEqual(done.returncode, status, done.stdout)
+            self.assertEqual("failed beside other tests, passed alone: Once\n" in done.stdout, status == 0, done.stdout)
+            self.assertRegex(done.stdout, r"  all: what failed, alone\n")
+
 
 class LongRuns(unittest.TestCase):
     def test_what_passed_is_not_run_again(self):

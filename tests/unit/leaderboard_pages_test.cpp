@@ -5,6 +5,7 @@
 #include <ctime>
 #include <tuple>
 
+#include <lgabench/leaderboard/board_steps.hpp>
 #include <lgabench/leaderboard/check.hpp>
 #include <lgabench/leaderboard/pages.hpp>
 #include <lgabench/leaderboard/scenes.hpp>
@@ -118,6 +119,43 @@ TEST(Board, APageBeginsWithTheBestRowOfEachMethod) {
   for (const char* words :
        {"not yet replayed", "claimed by", "answers as submitted", "does not say that they are equal"})
     EXPECT_SAYS(index, words);
+}
+
+TEST(Board, StepsAreOfRowsWithEqualOptionsAndAddUp) {
+  Setting setting = small_setting();
+  setting.suite = "clutter";
+  for (Setting::Scenario& scenario : setting.scenarios) scenario.arms = {"near_4", "others_1"};
+  setting.demonstrations = {5};
+  std::vector<Entry> entries;
+  const auto add = [&](const char* id, double rate, const Json& options) {
+    entries.push_back(replayed_entry(setting, id, rate));
+    entries.back().identity.row.id = entries.back().identity.row.name = id;
+    entries.back().identity.row.options = options;
+  };
+  const auto steps = [&] {
+    std::vector<const Entry*> table;
+    for (const Entry& entry : entries) table.push_back(&entry);
+    return steps_of(standings(table));
+  };
+  add("gcbc_seg", .2, {{"policy", "heat_map"}});
+  add("lga", .9, {{"policy", "heat_map"}, {"mask", "binary"}});
+  add("lga", .1, {{"policy", "heat_map"}, {"mask", "binary"}, {"meaning", "structured"}});
+  add("lga", .1, {{"policy", "centroid"}, {"mask", "binary"}});
+  add("human", 1, {{"policy", "heat_map"}, {"mask", "binary"}});
+  EXPECT_FALSE(steps());
+  add("taken_features", .6, {{"policy", "heat_map"}, {"mask", "binary"}});
+  const auto all = steps();
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->arm, "near_4");
+  EXPECT_EQ(all->demonstrations, 5);
+  EXPECT_NEAR(all->success[0], .2, .1);
+  EXPECT_NEAR(all->success[2], .9, .1);
+  EXPECT_EQ(all->success[3], 1);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(all->steps[i].difference, all->success[i + 1] - all->success[i], 1e-12);
+    EXPECT_LT(all->steps[i].interval.low, all->steps[i].difference);
+    EXPECT_GT(all->steps[i].interval.high, all->steps[i].difference);
+  }
 }
 
 TEST(Board, SuitesComeInThePapersOrderAndThoseWithoutARankLast) {

@@ -10,6 +10,7 @@
 #include <lgabench/leaderboard/answer_score.hpp>
 #include <lgabench/leaderboard/answers_page.hpp>
 #include <lgabench/leaderboard/areas.hpp>
+#include <lgabench/leaderboard/board_steps.hpp>
 #include <lgabench/leaderboard/titles.hpp>
 #include <lgabench/report/about_suite.hpp>
 #include <lgabench/report/names.hpp>
@@ -367,6 +368,15 @@ report::Document suite_document(const std::string& suite, const std::vector<Name
     if (table.ranking != Ranking::papers_network)
       if (auto answers = answers_section(table, id + "-answers")) document.sections.push_back(std::move(*answers));
     if (table.standings.empty()) continue;
+    if (const auto steps = steps_of(table.standings)) {
+      Section added{id + "-steps", "What labels, language and the truth add"};
+      added.add<Grid>(reading, steps_grid(*steps, suite, table.setting.name() + "_steps"));
+      added.add<Paragraph>(reading,
+                           {{fmt::format("{} Brackets: 95 % intervals over test scenes and training seeds of these "
+                                         "scenarios, and over other scenarios as well.",
+                                         report::words_of_steps)}});
+      document.sections.push_back(std::move(added));
+    }
     if (table.setting.demonstrations.size() > 1) {
       Section curve{id + "-curves", "Demonstrations"};
       curve.add<Charts>(on_page, {{curve_chart(table)}});

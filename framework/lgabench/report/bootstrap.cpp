@@ -119,13 +119,13 @@ void add_to(std::vector<float>& sums, const std::vector<float>& values, float ti
   for (std::size_t r = 0; r < sums.size(); ++r) sums[r] += times * values[r];
 }
 
-// Adds the mean of one scenario in one resample, for every row: as crossed_mean() and nested_mean().
-void add_resampled(const std::vector<std::vector<std::vector<float>>>& units, bool shared, RandomStream& random,
-                   std::vector<float>& sums) {
+// Adds the mean of one scenario in one resample, so many times, for every row: as crossed_mean() and nested_mean().
+void add_resampled(const std::vector<std::vector<std::vector<float>>>& units, bool shared, float times,
+                   RandomStream& random, std::vector<float>& sums) {
   shared = shared || units.size() == 1;
   const auto count = static_cast<std::uint32_t>(units.size()), scenes = static_cast<std::uint32_t>(units[0].size());
   const std::uint32_t drawn_units = shared ? count : count - 1;
-  const float weight = 1 / static_cast<float>(drawn_units * scenes);
+  const float weight = times / static_cast<float>(drawn_units * scenes);
   std::vector<std::uint32_t> of_all;  // scenes that all drawn units share
   for (std::uint32_t j = 0; shared && j < scenes; ++j) of_all.push_back(random.below(scenes));
   for (std::uint32_t i = 0; i < drawn_units; ++i) {
@@ -215,9 +215,10 @@ Change paired_change(const Samples& scenarios, std::string_view name, int resamp
 }
 
 SharedResamples::SharedResamples(const std::vector<std::vector<std::vector<std::vector<double>>>>& rows, bool shared,
-                                 std::string_view name) {
+                                 std::string_view name, const std::vector<double>& weights, Draws draws) {
   constexpr std::size_t resamples = 10000;
   const RowsByScene scenarios = transposed(rows);
+  const auto count = static_cast<std::uint32_t>(scenarios.size());
   for (const auto& units : scenarios)
     scenes_ += static_cast<double>((shared ? 1 : units.size()) * units.front().size());
   RandomStream random(name);
@@ -225,8 +226,14 @@ SharedResamples::SharedResamples(const std::vector<std::vector<std::vector<std::
   std::vector<float> sums(rows.size());
   for (std::size_t k = 0; k < resamples; ++k) {
     sums.assign(rows.size(), 0);
-    for (const auto& units : scenarios) add_resampled(units, shared, random, sums);
-    for (std::size_t r = 0; r < rows.size(); ++r) means_[r][k] = sums[r] / static_cast<float>(scenarios.size());
+    float counted = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t drawn = draws == Draws::scenes ? i : random.below(count);
+      const float times = weights.empty() ? 1 : static_cast<float>(weights[drawn]);
+      add_resampled(scenarios[drawn], shared, times, random, sums);
+      counted += times;
+    }
+    for (std::size_t r = 0; r < rows.size(); ++r) means_[r][k] = sums[r] / counted;
     const int one = times_drawn(random), other = times_drawn(random);
     imagined_.emplace_back(one, other);
   }
@@ -240,6 +247,17 @@ Interval SharedResamples::interval(std::size_t row) const {
   }
   std::sort(means.begin(), means.end());
   return percentile_interval(means);
+}
+
+Interval SharedResamples::difference(std::size_t one, std::size_t other) const {
+  std::vector<double> differences;
+  for (std::size_t k = 0; k < imagined_.size(); ++k) {
+    const auto [less, more] = imagined_[k];
+    const double sum = (static_cast<double>(means_[other][k]) - means_[one][k]) * scenes_ + more - less;
+    differences.push_back(sum / (scenes_ + less + more));
+  }
+  std::sort(differences.begin(), differences.end());
+  return percentile_interval(differences);
 }
 
 std::optional<Interval> SharedResamples::ratio(std::size_t row, std::size_t to) const {

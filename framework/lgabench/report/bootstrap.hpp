@@ -67,16 +67,20 @@ Change paired_change(const Samples& scenarios, std::string_view name, int resamp
 /// of every pair, for little more than the cost of one. 10,000 resamples.
 class SharedResamples {
  public:
+  enum class Draws { scenes, scenarios_too };  // beside the policies
   /// `rows`: of each row, scenario, policy and scene the success, or a mean of it. `shared`: as Sample::shared;
-  /// of a single policy it says nothing. @pre all rows have as many scenarios, policies and scenes; none is empty
+  /// of a single policy it says nothing. `weights`: what each scenario counts in a mean; as much as any other where
+  /// none is given. @pre all rows have as many scenarios, policies and scenes; none is empty
   SharedResamples(const std::vector<std::vector<std::vector<std::vector<double>>>>& rows, bool shared,
-                  std::string_view name);
+                  std::string_view name, const std::vector<double>& weights = {}, Draws draws = Draws::scenes);
   /// As success_interval(), of a row's mean.
   Interval interval(std::size_t row) const;
   /// As paired_change(): two-sided p that two rows are equally good. Where no resample is on the other side of 0 the
   /// tail is a normal distribution's with the resamples' mean and variance, if that is smaller: Holm's correction over
   /// more than 250 rows would otherwise find no difference.
   double p(std::size_t one, std::size_t other) const;
+  /// 95 % percentile interval of another row's mean minus a row's.
+  Interval difference(std::size_t one, std::size_t other) const;
   /// 95 % percentile interval of a row's mean as a share of another row's; none where in more than 2.5 % of the
   /// resamples that other one is 0.
   std::optional<Interval> ratio(std::size_t row, std::size_t to) const;

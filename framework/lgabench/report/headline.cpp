@@ -114,13 +114,24 @@ Spans headline(const Material& material, const AboutSuite& about) {
       Span::number(fixed(*row.success), place_of(row, "success"), Emphasis::strong),
       {" of the episodes"}};
   spans.front().text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(spans.front().text.front())));
+  const auto steps = std::find_if(material.summary.steps.begin(), material.summary.steps.end(), [&](const Steps& one) {
+    return first == stages[2].method && one.layout == table.layout && one.engine == table.engine &&
+           one.demonstrations == column->demonstrations;
+  });
   bool any = false;
-  for (const std::string& other : most_compared(methods, most_others))
+  if (steps != material.summary.steps.end()) {
+    spans.emplace_back(
+        fmt::format(". From pixels {} has {}; ", material.styles.name(stages[0].method), fixed(steps->success[0])));
+    for (Span& span : steps_sentence(steps->steps)) spans.push_back(std::move(span));
+    any = true;
+  }
+  for (const std::string& other : any ? std::vector<std::string>() : most_compared(methods, most_others))
     if (const auto change = against_method(material, table, first, other, *column)) {
       add_difference(spans, *change, material.styles.name(other), any ? ", " : ": ");
       any = true;
     }
-  if (const auto change = against_random(material, table, first, *column)) {
+  if (const auto change = against_random(material, table, first, *column);
+      change && steps == material.summary.steps.end()) {
     add_difference(spans, *change, "the " + display_name(random_row), any ? ", " : ": ");
     any = true;
   }

@@ -135,6 +135,7 @@ Document report_document(const Material& material) {
   const auto add = [&document](Section section) {
     if (!section.blocks.empty()) document.sections.push_back(std::move(section));
   };
+  add(steps(material));
   for (Section& section : success(material)) add(std::move(section));
   add(selection_errors(material));
   add(perturbations(material));

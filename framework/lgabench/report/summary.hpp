@@ -11,6 +11,7 @@
 #include <lgabench/report/paper.hpp>
 #include <lgabench/report/results.hpp>
 #include <lgabench/report/statistics.hpp>
+#include <lgabench/report/steps.hpp>
 
 namespace lgabench::report {
 
@@ -181,6 +182,7 @@ struct Summary {
   std::vector<Table> tables;
   std::vector<ErrorCurve> error_curves;
   std::vector<PerturbationCurve> perturbations;  // by table, method, demonstrations, axis
+  std::vector<Steps> steps;                      // pixels, labels, language, truth
   std::vector<CellResult> failed;                // cells
 };
 

@@ -78,6 +78,7 @@ Json to_json(const Summary& summary) {
   Json json{{"suite", summary.suite}, {"rows", rows}, {"failed_cells", failed}, {"near_paper", nearness}};
   for (const ErrorCurve& curve : summary.error_curves) json["error_curves"].push_back(to_json(curve));
   for (const PerturbationCurve& curve : summary.perturbations) json["perturbations"].push_back(to_json(curve));
+  for (const Steps& steps : summary.steps) json["steps"].push_back(to_json(steps));
   return json;
 }
 

@@ -1,0 +1,59 @@
+// What labels, language and the truth add.
+#include <fmt/format.h>
+
+#include <lgabench/report/sections.hpp>
+#include <lgabench/report/tables.hpp>
+
+namespace lgabench::report {
+namespace {
+
+std::string signed_rate(double x) { return signed_text(x); }
+
+Grid grid_of(const Material& material, const Table& table) {
+  Grid grid;
+  grid.name = fmt::format("steps_{}_{}", slug(table.layout), slug(table.engine));
+  grid.group_head = "demonstrations";
+  grid.heads = {"told", "row", "success", "added", "these commands", "other commands too"};
+  grid.align = "llrrll";
+  for (const Steps& one : material.summary.steps) {
+    if (one.layout != table.layout || one.engine != table.engine) continue;
+    grid.caption =
+        fmt::format("Success in {}, and what each row adds to the one above it, {}; brackets: 95 % intervals",
+                    table.arm_title(one.arm), table.title());
+    const std::string place = fmt::format("/steps/{}/", &one - material.summary.steps.data());
+    for (std::size_t i = 0; i < stages.size(); ++i) {
+      Grid::Row row{table.demonstrations_text(one.demonstrations),
+                    {stages[i].what, named(material, stages[i].method),
+                     Span::number(fixed(one.success[i]), fmt::format("{}stages/{}/success", place, i))}};
+      row.cells.back().episodes = one.rows[i];
+      row.cells.back().rate = one.success[i];
+      row.cells.resize(grid.heads.size());
+      if (i > 0) {
+        const Step& step = one.steps[i - 1];
+        const std::string own = fmt::format("{}steps/{}/", place, i - 1);
+        const auto interval = [](const Interval& of, const std::string& where) {
+          return Spans{Span::number("["), Span::number(signed_rate(of.low), where + "low"), Span::number(", "),
+                       Span::number(signed_rate(of.high), where + "high"), Span::number("]")};
+        };
+        row.cells[3] = Span::number(signed_rate(step.difference), own + "difference", Emphasis::strong);
+        row.cells[4] = interval(step.interval, own);
+        row.cells[5] = interval(step.over_commands, own + "over_commands/");
+      }
+      grid.rows.push_back(std::move(row));
+    }
+  }
+  return grid;
+}
+
+}  // namespace
+
+Section steps(const Material& material) {
+  Section section{"steps", "What labels, language and the truth add"};
+  for (const Table& table : material.summary.tables)
+    if (Grid grid = grid_of(material, table); !grid.rows.empty()) section.add(reading, std::move(grid));
+  if (section.blocks.empty()) return section;
+  section.add(reading, Paragraph{{words_of_steps}});
+  return section;
+}
+
+}  // namespace lgabench::report
