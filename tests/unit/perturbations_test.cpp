@@ -303,7 +303,7 @@ TEST(Perturbations, ASuiteNamesThemInALineEach) {
 Scenario instructed_world(const std::string& id = "many_hearts") {
   const Suite suite = load_suite("perturbations");
   const Design design = preset_design(suite, "instruction");
-  return suite_scenario(suite, id, Truth::released, &design.perturbations);
+  return suite_scenario(suite, id, Truth::released, &design);
 }
 
 const ScenarioCommand& given(const Scenario& scenario, const Scene& scene) {

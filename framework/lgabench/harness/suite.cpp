@@ -254,12 +254,13 @@ Suite load_suite(const std::string& id) {
       if (variant.json().empty()) variant.fail("\"train\", \"commands\" or \"arms\"");
     }
   }
-  std::vector<std::string> played = suite.design.scenarios;
+  std::vector<std::string> with_variants = suite.design.scenarios;
   for (const std::string& scenario : suite.design.scenarios)
-    for (const auto& [name, ignored] : suite.variants.items()) played.push_back(fmt::format("{}_{}", scenario, name));
+    for (const auto& [name, ignored] : suite.variants.items())
+      with_variants.push_back(fmt::format("{}_{}", scenario, name));
   if (reader.has("arms"))
     for (const JsonReader& arm : reader.at("arms").elements())
-      if (arm.has("except")) names(arm.at("except"), "scenario of the suite", played);
+      if (arm.has("except")) names(arm.at("except"), "scenario of the suite", with_variants);
   if (reader.has("groups")) {
     suite.groups = reader.at("groups").json();
     std::vector<std::string> grouped;

@@ -54,8 +54,8 @@ class Page {
   unsigned* words_;
 };
 
-// Three steps, at each of which one method waits for the other. All threads begin at once: nobody's number of threads changes
-// while the other one counts them.
+// Three steps, at each of which one method waits for the other. All threads begin at once: nobody's number of threads
+// changes while the other one counts them.
 class Meetings {
  public:
   Meetings(const Page& page, int own) : page_(page), own_(own) {
