@@ -47,7 +47,7 @@ class PluginAxes(case.Case):
         """A suite of `heart` and another scenario, which does not play the lines' axes."""
         scenarios = ["heart", "tiger_colored_object"]
         lines = [{"except": scenarios[1:], **line} for line in lines]
-        suite = {**self.own, "id": name, "presets": {}, "scenes": {}, "paraphrases": {}, "scenarios": scenarios,
+        suite = {**self.own, "id": name, "presets": {}, "scenes": {}, "paraphrases": {}, "answers": {}, "scenarios": scenarios,
                  "methods": ["lga"], "demonstrations": [2], "seeds": [0], "episodes": 2, "perturbations": lines, **members}
         (self.dir / f"{name}.json").write_text(json.dumps(suite))
         return f"{name}.json"

@@ -81,15 +81,15 @@ class Elements(Case):
         directory = os.open(self.dir / "part", os.O_RDONLY)
         self.addCleanup(os.close, directory)
         fcntl.flock(directory, fcntl.LOCK_EX)
-        self.assertRegex(self.call("status", "part", expect=3).stdout, r" 1/2 +10 +7 +1 +0 +2  part \(running\)")
+        self.assertRegex(self.call("status", "part", expect=3).stdout, r" 1/2 +14 +11 +1 +0 +2  part \(running\)")
 
     def test_status_of_two_parts_in_one_directory_is_the_whole_runs(self):
         for shard in ("1/2", "2/2", "1/2"):
             self.call("run", *RUN, "--shard", shard, "--out", "both")
         self.assert_matches_schemas("both")
-        self.assertRegex(self.call("status", "both").stdout, r" 1/1 +20 +20 +0 +0 +0 ")
+        self.assertRegex(self.call("status", "both").stdout, r" 1/1 +28 +28 +0 +0 +0 ")
         shutil.rmtree(next((self.dir / "both/cells").iterdir()))
-        self.assertRegex(self.call("status", "both", expect=3).stdout, r" 1/1 +20 +19 +0 +0 +1 ")
+        self.assertRegex(self.call("status", "both", expect=3).stdout, r" 1/1 +28 +27 +0 +0 +1 ")
 
     def test_status_counts_as_failed_what_a_report_leaves_out(self):
         self.call("run", *RUN, "--out", "run")
@@ -99,7 +99,7 @@ class Elements(Case):
             timing.write(" ")  # its checksum alone says so
         (cells[1] / "status.json").unlink()
         done = self.call("status", "run", expect=3)
-        self.assertRegex(done.stdout, r" 1/1 +20 +18 +0 +2 +0  run\nto finish: --array=1\n")
+        self.assertRegex(done.stdout, r" 1/1 +28 +26 +0 +2 +0  run\nto finish: --array=1\n")
         left_out = [line for line in self.call("report", "run", expect=2).stderr.splitlines() if line.startswith("left out: ")]
         self.assertEqual(sorted(done.stderr.splitlines()), sorted(left_out))
         self.assertEqual(len(left_out), 2)
@@ -116,21 +116,21 @@ class Elements(Case):
         self.play(1)
         done = merged()  # though element 2 never ran
         self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertIn("10 cells finished, 0 failed, 0 left out, 10 in none of the runs\n", done.stderr)
+        self.assertIn("14 cells finished, 0 failed, 0 left out, 14 in none of the runs\n", done.stderr)
         self.call("merge", "some", "out/part-1", "--partial")
         self.play(2)
         torn = next((self.dir / "out/part-2/cells").glob("*/episodes.jsonl"))
         torn.write_bytes(torn.read_bytes().replace(b":1", b":0", 1))
         for words in ([], ["--partial"]):
             said = self.call("merge", "all", "out/part-1", "out/part-2", *words, expect=3).stderr
-            self.assertIn("19 cells finished, 0 failed, 1 left out, 0 in none of the runs\n", said)
+            self.assertIn("27 cells finished, 0 failed, 1 left out, 0 in none of the runs\n", said)
         self.assertEqual(merged().returncode, 3)
         self.play(2)
         self.assertEqual(merged().returncode, 0)
         self.call("merge", "some", "out/part-2")  # into what the other part was merged into
 
     def test_what_is_wrong_is_said_before_anything_is_written(self):
-        for words, reason in [(("--elements", "99"), "--elements 99: the run has 20 cells"),
+        for words, reason in [(("--elements", "99"), "--elements 99: the run has 28 cells"),
                               (("--elements", "2", "--seeds", "x"), "--seeds: expected whole numbers"),
                               (("--elements", "2", "--time", "2h"), "--time 2h: expected HH:MM:SS"),
                               (("--elements", "2", "--time", "00:02:30"), "--time 00:02:30: expected 300 s at least: an "

@@ -103,13 +103,13 @@ class Submissions(Board):
     def test_from_a_run_to_a_page(self):
         self.take_run()
         said = self.add().stdout
-        self.assertEqual(len(re.findall(r"^added entries/\w+/[0-9a-f]{16}/tiny-board$", said, re.M)), 5, said)
+        self.assertEqual(len(re.findall(r"^added entries/\w+/[0-9a-f]{16}/tiny-board$", said, re.M)), 6, said)
         self.leaderboard("build")
-        self.assertIn("5 entries, 0 problems", self.leaderboard("check").stdout)
+        self.assertIn("6 entries, 0 problems", self.leaderboard("check").stdout)
         board = self.dir / "board"
         self.assertRegex((board / "README.md").read_text(), r"\| not yet replayed \|(.*\n)*\| fixture_constant, demonstration=[01] \|")
         self.replay()
-        self.assertIn("5 entries, 0 problems", self.leaderboard("check").stdout)
+        self.assertIn("6 entries, 0 problems", self.leaderboard("check").stdout)
         self.assertEqual(sorted(file.name for file in board.glob("*.*")),
                          ["README.md", "index.html", "leaderboard.csv", "tiny.html", "vouched.json", "vouched_entries.json"])
         self.assertRegex((board / "README.md").read_text(), r"\| 1 \| fixture_constant, demonstration=[01] \|")
@@ -119,7 +119,7 @@ class Submissions(Board):
         self.assertRegex(entry["evidence"][0]["program"], r"^lgabench \S+ \(commit ")
         self.assertRegex(entry["evidence"][0]["command"], "^lgabench run tiny ")  # not where the program lies
         said = self.add(expect=1).stderr
-        self.assertEqual(len(re.findall(": this run is on the board already$", said, re.M)), 5)
+        self.assertEqual(len(re.findall(": this run is on the board already$", said, re.M)), 6)
 
     def test_a_file_of_answers_goes_with_its_entry(self):
         self.prepare()
@@ -145,7 +145,7 @@ class Submissions(Board):
         self.call("merge", "whole", "part1", "part2")
         self.add()
         cells = {file: file.read_bytes() for file in (self.dir / "board").rglob("cells.jsonl")}
-        self.assertEqual(self.add("whole").stdout.count("evidence added to"), 5)
+        self.assertEqual(self.add("whole").stdout.count("evidence added to"), 6)
         self.assertEqual({file: file.read_bytes() for file in cells}, cells)
         self.assertIn("missing: ", self.add("part1", 1).stderr)
 
@@ -175,7 +175,7 @@ class Submissions(Board):
         self.take_run()
         self.add()
         self.change_run(started="2030-01-01T00:00:00Z")
-        self.assertEqual(self.add().stdout.count("evidence added to"), 5)
+        self.assertEqual(self.add().stdout.count("evidence added to"), 6)
         entry = json.loads(next((self.dir / "board").glob("entries/oracle/*/*/entry.json")).read_text())
         self.assertEqual(len(entry["evidence"]), 2)
 
@@ -266,10 +266,10 @@ class Submissions(Board):
         self.assertEqual({time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(file.mtime)) for file in files}, {started})
         root = self.dir / "away/lgabench-leaderboard"
         readme = (root / "README.md").read_text()
-        self.assertIn(f"5 entries, the newest computed on {started[:10]}", readme)
+        self.assertIn(f"6 entries, the newest computed on {started[:10]}", readme)
         self.assertEqual([link for link in re.findall(r"\]\(([^)]+)\)", readme) if not (root / link).exists()], [])
         self.assertRegex((root / "CITATION.cff").read_text(), "(?m)^cff-version: ")
-        self.assertIn("5 entries, 0 problems", self.call("leaderboard", "check", "--board", root / "leaderboard").stdout)
+        self.assertIn("6 entries, 0 problems", self.call("leaderboard", "check", "--board", root / "leaderboard").stdout)
         (self.dir / "board/elsewhere").symlink_to("/etc/passwd")
         self.assertIn("elsewhere: no file of a board", self.leaderboard("build", "--archive", "none.tar.gz", expect=1).stderr)
         self.assertFalse((self.dir / "none.tar.gz").exists())

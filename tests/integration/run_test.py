@@ -178,7 +178,7 @@ class Variants(Case):
         settings = json.loads((self.dir / "out/run.json").read_text())["settings"]
         self.assertEqual([settings[row]["epochs"] for row in ("lga+epochs=5", "lga+loss=squared", "factorial")], [5, 6, 5])
         self.assertIn("beside the plugins' defaults, epochs=6, loss=squared: LGA loss=squared\n", table)
-        self.assertIn("0 cells computed, 6 reused", self.call(*arguments).stderr)
+        self.assertIn("0 cells computed, 7 reused", self.call(*arguments).stderr)
 
         # factorial with its defaults is LGA.
         results = {cell["method"]["name"]: [(self.dir / "out/cells" / key / name).read_bytes()
@@ -305,7 +305,7 @@ class Shards(Case):
     RUN = ["run", "q1", "--scenarios", "heart,letter", "--methods",
            "fixture_constant,fixture_faulty+where=learn+how=throw", "--demos", "10,20", "--seeds", "0", "--episodes", "2", "--plugin-path", FIXTURES / "good",
            "--plugin-path", FIXTURES / "faulty"]
-    CELLS, FAILED = 2 * (2 * 3 + 2), 2 * 2
+    CELLS, FAILED = 2 * (2 * 4 + 2), 2 * 2
 
     def test_merged_they_are_the_undisturbed_run(self):
         said = self.call(*self.RUN, "--out", "whole", "--jobs", "2", expect=3).stderr

@@ -89,13 +89,13 @@ class Verify(BesideOneRun):
         said = self.verify("--all", expect=5).stdout
         self.assertRegex(said, r"not as recorded:\n  build: liblgabench_learning.so \(00000000 there, [0-9a-f]{8} here\)\n")
         self.assertRegex(self.line_of_the_cell(said), r"^same outcomes .*: from training.jsonl line 1$")
-        self.assertIn("\n3 bit-identical, 1 same outcomes\nNOT bit-identical: 1 of 4 cells; 0 of 16 episodes that can be "
+        self.assertIn("\n4 bit-identical, 1 same outcomes\nNOT bit-identical: 1 of 5 cells; 0 of 20 episodes that can be "
                       "compared ended differently\nOf 1 the record names another build, processor or data: its own word", said)
         self.assertEqual(said.splitlines()[-1], "verdict: agrees")
-        self.assertIn("NOT bit-identical: 1 of 4 cells", self.verify("--all", "--strict", expect=1).stdout)
+        self.assertIn("NOT bit-identical: 1 of 5 cells", self.verify("--all", "--strict", expect=1).stdout)
 
     def test_a_forger_cannot_choose_the_milder_rule(self):
-        """One episode of 16 that is won in the record alone is more than 1 %, whatever build or processor the record names."""
+        """One episode of 20 that is won in the record alone is more than 1 %, whatever build or processor the record names."""
         episodes = [json.loads(line) for line in (self.cell / "episodes.jsonl").read_text().splitlines()]
         lost = next(i for i, episode in enumerate(episodes) if not episode["success"])
         self.change("episodes.jsonl", lost, success=True, failure="none", attribution=None)
@@ -112,7 +112,7 @@ class Verify(BesideOneRun):
                 forge()
                 said = self.verify("--all", expect=1).stdout
                 self.assertRegex(self.line_of_the_cell(said), r"^other outcomes .*succeeded there, ")
-                self.assertIn("NOT bit-identical: 1 of 4 cells; 1 of 16 episodes", said)
+                self.assertIn("NOT bit-identical: 1 of 5 cells; 1 of 20 episodes", said)
                 self.assertIn("its own word, which proves nothing", said)
                 self.assertEqual(said.splitlines()[-1], "verdict: differs")
                 self.assertEqual(json.loads(self.verify("--all", "--json", expect=1).stdout)["verdict"], "differs")
@@ -124,7 +124,7 @@ class Verify(BesideOneRun):
         self.environment = {**self.environment, "LGABENCH_DATA": str(self.run_directory / "data")}
         said = self.verify("--all", expect=0).stdout
         self.assertRegex(said, r"not as recorded:\n  data: answers \([0-9a-f]{8} there, [0-9a-f]{8} here\)\n")
-        self.assertIn("\n4 bit-identical\n", said)
+        self.assertIn("\n5 bit-identical\n", said)
 
     def test_another_processor_is_named(self):
         run = json.loads((self.run_directory / "run.json").read_text())
@@ -139,7 +139,7 @@ class Verify(BesideOneRun):
         done = self.verify("--all", expect=1)
         self.assertRegex(done.stderr.splitlines()[0],
                          rf"^edited: .*{self.cell.name}/episodes.jsonl does not have the bytes that were written")
-        self.assertIn("3 of 3 finished cells", done.stdout)
+        self.assertIn("4 of 4 finished cells", done.stdout)
         self.assertEqual(done.stdout.splitlines()[-1], "1 cells were edited: not verified")
 
     def test_a_cell_under_another_name_is_edited(self):
@@ -173,7 +173,7 @@ class Compare(Case):
                 rewrite(path.parent, "cell.json", lambda cell: {**cell, "method": {**cell["method"], "name": method}})
 
     def test_compare(self):
-        self.assertEqual(self.call("compare", "a", "a").stdout.count("same actions"), 5)
+        self.assertEqual(self.call("compare", "a", "a").stdout.count("same actions"), 6)
         self.assertFalse(json.loads(self.call("compare", "a", "a", "--json").stdout)["regressed"])
         shutil.copytree(self.dir / "a", self.dir / "worse")
         self.make("a", "oracle", True)

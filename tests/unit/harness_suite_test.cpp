@@ -388,8 +388,9 @@ TEST(TestScenes, PerSeedGiveEachTrainingSeedItsOwn) {
   const std::vector<Cell> shared = expand(load_suite("q1"), design, {}, catalogue());
   design.test_scenes = TestScenes::per_seed;
   const std::vector<Cell> own = expand(load_suite("q1"), design, {}, catalogue());
-  // 2 scenarios x (2 numbers x 3 seeds x (2 methods + constant action) + 3 seeds x (random object + oracle))
-  EXPECT_EQ(own.size(), 2u * (2 * 3 * 3 + 3 * 2));
+  // 2 scenarios x (2 numbers x 3 seeds x (2 methods + constant action + most demonstrated) + 3 seeds x (random object +
+  // oracle))
+  EXPECT_EQ(own.size(), 2u * (2 * 3 * 4 + 3 * 2));
   EXPECT_EQ(shared.front().scenes_of_seed(), std::nullopt);
   std::set<std::uint64_t> oracles;
   for (const Cell& cell : own) {
@@ -466,7 +467,7 @@ TEST(Variants, EveryShippedSuiteExpandsWithTheShippedPlugins) {
       Design design = preset_design(suite, preset);
       design.engines = {engine_under_test().id};
       const std::size_t seeds = design.seeds.size(), sets = scene_sets(design.test_scenes, design.seeds).size();
-      const std::size_t each = design.demonstrations.size() * seeds * (design.methods.size() + 1) + 2 * sets;
+      const std::size_t each = design.demonstrations.size() * seeds * (design.methods.size() + 2) + 2 * sets;
       EXPECT_EQ(expand(suite, design, {}, shipped).size(), design.scenarios.size() * each) << id << " " << preset;
     }
   }
@@ -476,7 +477,7 @@ TEST(Variants, EveryShippedSuiteExpandsWithTheShippedPlugins) {
     design.engines = {engine_under_test().id};
     EXPECT_EQ(design.test_scenes, TestScenes::per_seed) << "same_place is near each seed's own first demonstration";
     const std::size_t seeds = design.seeds.size();
-    const std::size_t each = design.demonstrations.size() * seeds * (design.methods.size() + 1) + 2 * seeds;
+    const std::size_t each = design.demonstrations.size() * seeds * (design.methods.size() + 2) + 2 * seeds;
     EXPECT_EQ(expand(mobile, design, {}, shipped).size(), design.scenarios.size() * each) << preset;
   }
   Design smoke = preset_design(load_suite("factorial"), "smoke");

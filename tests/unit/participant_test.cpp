@@ -164,7 +164,7 @@ TEST(RecordedFiles, AreAsTheirSchemaSays) {
     bad.merge_patch(Json::parse(patch));
     EXPECT_TRUE(refused(bad)) << patch;
   }
-  for (const char* patch : {R"({"command": ""})", R"({"target": null})", R"({"target": {"textures": null}})",
+  for (const char* patch : {R"({"command": null})", R"({"target": null})", R"({"target": {"textures": null}})",
                             R"({"scenario": 3})", R"({"avoid": {"more": 1}})", R"({"target": {"textures": "red"}})"}) {
     Json bad = good;
     bad["answers"][0].merge_patch(Json::parse(patch));

@@ -76,11 +76,9 @@ std::string words_of(Ranking ranking, const Track* track) {
         : track->answers.empty()
             ? "The truth of these commands is public, so answers to them prove nothing; no file of answers is frozen "
               "for this table, and no row has a rank."
-            : fmt::format(
-                  "The truth of these commands is public, so answers to them prove nothing, and what is ranked is the "
-                  "method: rows that share one frozen file of answers (\"{}\"), and those that select nothing. Other "
-                  "answers have no rank.",
-                  track->answers);
+            : "The truth of these commands is public, so answers to them prove nothing, and what is ranked is the "
+              "method: rows that share one frozen file of answers, and those that select nothing. Other answers have "
+              "no rank.";
     return "Answers only: rows differ in what is selected alone, and the shipped policy learns and acts. \"Where it "
            "decides\" is success in the test scenes in which an abstraction decides; \"gap closed\" is the part of the "
            "distance there from the mask of any object to the true mask. " +
