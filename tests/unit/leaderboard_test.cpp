@@ -424,12 +424,12 @@ TEST(Standings, EachRankingRanksItsOwnRowsAndAnswersOnlyMethodsOnFrozenAnswers) 
       why[s.entry->identity.row.id] = s.rank ? std::to_string(*s.rank) : s.not_ranked;
     return why;
   };
-  EXPECT_EQ(tell()["factorial"], "other answers than \"claude_track\"");
+  EXPECT_EQ(tell()["factorial"], "other answers than the frozen ones");
   EXPECT_EQ(tell()["human"], "1");
   selects(entries[1], "none");
   EXPECT_EQ(tell()["factorial"], "3");
   selects(entries[1], "rule");
-  EXPECT_EQ(tell()["factorial"], "other answers than \"claude_track\"") << "a rule of its own";
+  EXPECT_EQ(tell()["factorial"], "other answers than the frozen ones") << "a rule of its own";
   EXPECT_NE(words_of(Ranking::answers_only, &frozen).find("share one frozen file of answers,"), std::string::npos);
   const Track open_answers{Track::abstraction, {"test"}};
   EXPECT_NE(words_of(Ranking::answers_only, &open_answers).find("no row has a rank"), std::string::npos);

@@ -32,7 +32,9 @@ class Page {
     if (words_ == MAP_FAILED) throw std::runtime_error("cannot map " + file);
   }
   /// Waits there from now on.
-  void stay_at(int word) const { stay(words_ + word); }
+  void stay_at(int word) const {
+    std::thread([at = words_ + word] { stay(at); }).detach();
+  }
   /// Waits there once what is returned is set.
   std::promise<void> stay_later_at(int word) const {
     std::promise<void> begin;
