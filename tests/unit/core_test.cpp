@@ -348,9 +348,10 @@ TEST(Scenario, RefusesBadInput) {
   EXPECT_SAYS(refusal(json), "expected each name once");
   json = heart();
   json["answers"] = {{"recorded", "gpt4"}};
-  EXPECT_SAYS(refusal(json),
-              "mine.json: /answers/recorded: expected one of: claude, claude_clutter, claude_drawn, claude_fetch, "
-              "claude_instruction, claude_paraphrases, claude_track, claude_unheard, claude_words, gpt4_released, gpt4_study");
+  EXPECT_SAYS(
+      refusal(json),
+      "mine.json: /answers/recorded: expected one of: claude, claude_clutter, claude_drawn, claude_fetch, "
+      "claude_instruction, claude_paraphrases, claude_track, claude_unheard, claude_words, gpt4_released, gpt4_study");
   json = heart();
   json["printed"] = {{"task", "rotate"}};
   EXPECT_SAYS(refusal(json), "mine.json: /printed: unknown member \"task\"");
