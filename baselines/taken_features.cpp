@@ -3,7 +3,6 @@
 // labels. The reference row most_demonstrated, as a mask under a policy.
 #include <map>
 
-#include <lgabench/core/environments.hpp>
 #include <lgabench/learning/cloning_method.hpp>
 #include <lgabench/plugin/plugin.hpp>
 
@@ -25,6 +24,12 @@ Counts likest(const Observation& observation, const Counts& counts, const Counts
     best.objects.emplace_back(one.object_type, one.texture);
   }
   return best;
+}
+
+// All types and all textures of what was taken, and of what it was brought to where a second set is asked for.
+void keep(Selection& selection, const TakenFeatures& features, const FeatureSpace& space) {
+  selection.target = with(features.taken, {}, space);
+  if (selection.second) static_cast<FeatureSet&>(*selection.second) = with(features.received, {}, space);
 }
 
 // Acts on a mask of the likest object in view, wherever it is told what revise() selected.
@@ -86,8 +91,7 @@ class OfTaken : public CloningMethod {
     TakenFeatures features = taken_for(command.utterance, demonstrations, services.actions);
     if (features.taken.none()) features = taken_by(demonstrations, services.actions);
     Selection revised = selected;
-    revised.target = with(features.taken, {}, space_);
-    if (revised.second) static_cast<FeatureSet&>(*revised.second) = with(features.received, {}, space_);
+    keep(revised, features, space_);
     revised_[command.utterance] = distribution_json(revised);
     return revised;
   }
@@ -96,12 +100,10 @@ class OfTaken : public CloningMethod {
     std::map<std::string, TakenFeatures> by_command;
     std::vector<Demonstration> shown = demonstrations;
     for (Demonstration& one : shown) {
-      const TakenFeatures own = taken_by({one}, services.actions);
-      by_command.emplace(one.instruction.utterance,
-                         taken_for(one.instruction.utterance, demonstrations, services.actions));
-      one.instruction.selection.target = with(own.taken, {}, space_);
-      if (auto& second = one.instruction.selection.second)
-        static_cast<FeatureSet&>(*second) = with(own.received, {}, space_);
+      TakenFeatures own;
+      own.add(one, services.actions);
+      by_command[one.instruction.utterance].add(one, services.actions);
+      keep(one.instruction.selection, own, space_);
     }
     return std::make_unique<ActsOnTheLikest>(CloningMethod::learn(shown, services), std::move(by_command),
                                              taken_by(demonstrations, services.actions), revised_, space_);

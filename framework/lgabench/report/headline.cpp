@@ -118,22 +118,20 @@ Spans headline(const Material& material, const AboutSuite& about) {
     return first == stages[2].method && one.layout == table.layout && one.engine == table.engine &&
            one.demonstrations == column->demonstrations;
   });
-  bool any = false;
-  if (steps != material.summary.steps.end()) {
+  bool any = steps != material.summary.steps.end();
+  if (any) {
     spans.emplace_back(
         fmt::format(". From pixels {} has {}; ", material.styles.name(stages[0].method), fixed(steps->success[0])));
     for (Span& span : steps_sentence(steps->steps)) spans.push_back(std::move(span));
-    any = true;
-  }
-  for (const std::string& other : any ? std::vector<std::string>() : most_compared(methods, most_others))
-    if (const auto change = against_method(material, table, first, other, *column)) {
-      add_difference(spans, *change, material.styles.name(other), any ? ", " : ": ");
+  } else {
+    const auto add = [&](const std::optional<Change>& change, const std::string& other) {
+      if (!change) return;
+      add_difference(spans, *change, other, any ? ", " : ": ");
       any = true;
-    }
-  if (const auto change = against_random(material, table, first, *column);
-      change && steps == material.summary.steps.end()) {
-    add_difference(spans, *change, "the " + display_name(random_row), any ? ", " : ": ");
-    any = true;
+    };
+    for (const std::string& other : most_compared(methods, most_others))
+      add(against_method(material, table, first, other, *column), material.styles.name(other));
+    add(against_random(material, table, first, *column), "the " + display_name(random_row));
   }
   spans.emplace_back(any ? " (95 % intervals of the paired differences)." : ".");
   std::vector<std::string> verdicts;
