@@ -3,8 +3,10 @@
 
 #include <cstdlib>
 #include <ctime>
+#include <regex>
 #include <tuple>
 
+#include <lgabench/core/rounding.hpp>
 #include <lgabench/leaderboard/board_steps.hpp>
 #include <lgabench/leaderboard/check.hpp>
 #include <lgabench/leaderboard/pages.hpp>
@@ -335,34 +337,46 @@ TEST(Board, APageIsCurrentIfWhatComesFromTheEntriesIs) {
   EXPECT_SAYS(all(check(board.path).problems), "q1.html: not what lgabench leaderboard build makes");
 }
 
-TEST(Board, DocumentsHaveTheTablesOfReadme) {
+TEST(Board, DocumentsHaveSuccessByArmAndDemonstrations) {
   const TemporaryDirectory scratch;
-  const fs::path board = scratch.path / "results/board", document = scratch.path / "docs/results.md";
+  const fs::path board = scratch.path / "results/board", documents = scratch.path / "docs/results",
+                 document = documents / "q1.md";
   const std::string before = "# Results\n\nBy hand.\n\n<!-- board:q1-board -->\n", after = "<!-- /board -->\n\nMore.\n";
-  const auto problems = [&] { return all(check(board, {"", false, {document}}).problems); };
+  const auto problems = [&] { return all(check(board, {"", false, {documents}}).problems); };
   fs::create_directories(board / "entries");
+  fs::create_directories(documents);
   write_file(document, before + after);
-  build(board, {document});
+  build(board, {documents});
   EXPECT_EQ(read_file(document), before + "\nNo entry of q1-board yet.\n\n" + after);
   const Entry entry = made_entry(small_setting(), "a", .5);
   write_replayed(board, entry);
   build(board);
-  EXPECT_SAYS(problems(), "results.md: not what lgabench leaderboard build makes");
-  build(board, {document});
+  EXPECT_SAYS(problems(), "q1.md: not what lgabench leaderboard build makes");
+  build(board, {documents});
   EXPECT_EQ(problems(), "");
-  const std::string text = read_file(document), readme = read_file(board / "README.md");
+  const std::string text = read_file(document);
   EXPECT_EQ(text.find(before), 0u);
   EXPECT_SAYS(text, "\n\n" + after);
-  std::string table = readme.substr(readme.find("| rank"), readme.find("\n## What the words") - readme.find("| rank"));
-  EXPECT_SAYS(table, "](entries/");
-  table.replace(table.find("](entries/"), 2, "](../results/board/");
-  EXPECT_SAYS(text, table);
-  build(board, {document});
+  EXPECT_SAYS(text, "(../../results/board/q1.html)");
+  const auto share = [&](const std::string& scenario, const std::string& arm, int n) {
+    double won = 0, played = 0;
+    for (const PlayedCell& cell : entry.cells)
+      if (cell.place.scenario == scenario && cell.place.demonstrations == n)
+        for (const char letter : cell.outcomes.at(arm)) won += is_success(letter), ++played;
+    return won / played;
+  };
+  const double at_10 = (share("heart", "test", 10) + share("letter", "test", 10)) / 2,
+               at_20 = (share("heart", "test", 20) + share("letter", "test", 20)) / 2;
+  EXPECT_TRUE(std::regex_search(
+      text, std::regex(fmt::format(R"(\| {} \[0[.0-9, ]+\] \| {} \[0[.0-9, ]+\] \|)", fixed(at_10), fixed(at_20)))))
+      << text;
+  EXPECT_SAYS(text, fmt::format("| {} | {} |\n", fixed(at_20), fixed(share("letter", "hard", 20))));
+  build(board, {documents});
   EXPECT_EQ(read_file(document), text) << "built twice";
   for (const std::string& broken : {before, after, fmt::format("{0}{0}{1}", before, after)}) {
     write_file(document, broken);
-    EXPECT_SAYS(problems(), "results.md: expected <!-- ");
-    EXPECT_THROW(build(board, {document}), InputError);
+    EXPECT_SAYS(problems(), "q1.md: expected <!-- ");
+    EXPECT_THROW(build(board, {documents}), InputError);
     EXPECT_EQ(read_file(document), broken);
   }
 }

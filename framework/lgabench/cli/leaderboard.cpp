@@ -226,7 +226,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
   verb->add_flag("--maintainer", a->maintainer,
                  "build, check: with --against, files that are the maintainers' may differ");
   verb->add_option("--documents", a->documents,
-                   "build, check: documents that contain tables of the board between markers")
+                   "build, check: documents that contain tables of the board between markers, or a folder of them")
       ->delimiter(',');
   verb->add_option("--archive", a->archive,
                    "build: pack the board into an archive once it is checked, with license and citation");
@@ -247,7 +247,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
            {"--methods", "FILE.py:CLASS,..."},
            {"--python", "PROGRAM"}});
   arrange(*verb, "build and check",
-          {{"--documents", "FILE,..."}, {"--archive", "OUT.tar.gz"}, {"--against", "REVISION"}, {"--maintainer", ""}});
+          {{"--documents", "PATH,..."}, {"--archive", "OUT.tar.gz"}, {"--against", "REVISION"}, {"--maintainer", ""}});
   verb->footer(
       "Example: lgabench leaderboard add runs/q1-leaderboard --entry me.json && lgabench leaderboard build\nadd "
       "refuses a run that is not the whole preset on the board's scenes, and lists what is missing.\nverify plays "

@@ -27,26 +27,12 @@ std::array<const Entry*, stages.size()> rows_of(const std::vector<Standing>& tab
   for (std::size_t i = stages.size(); i-- > 0;)
     for (const Standing& s : table) {
       const Competitor& row = s.entry->identity.row;
-      if (row.id == stages[i].method && !row.is_reference() && !row.acts && policy_of(*s.entry) == "heat_map" &&
-          answers_file(s.entry->identity).empty() &&
+      if (row.id == stages[i].method && !row.is_reference() && (!row.acts || row.acts->id == "lga") &&
+          policy_of(*s.entry) == "heat_map" && answers_file(s.entry->identity).empty() &&
           (!rows.back() || has_each_of(rows.back()->identity.row.options, row.options)))
         rows[i] = s.entry;
     }
   return rows;
-}
-
-// Success by scenario, training seed and test scene.
-std::vector<std::vector<std::vector<double>>> rates_of(const Entry& entry, const std::string& arm, int n) {
-  std::map<std::pair<std::string, std::string>, std::vector<std::vector<double>>> by_scenario;
-  for (const PlayedCell& cell : entry.cells) {
-    const auto letters = cell.outcomes.find(arm);
-    if (letters == cell.outcomes.end() || cell.place.demonstrations != n) continue;
-    std::vector<double>& won = by_scenario[{cell.place.scenario, cell.place.layout}].emplace_back();
-    for (const char letter : letters->second) won.push_back(is_success(letter) ? 1 : 0);
-  }
-  std::vector<std::vector<std::vector<double>>> rates;
-  for (auto& one : by_scenario) rates.push_back(std::move(one.second));
-  return rates;
 }
 
 }  // namespace

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include <lgabench/leaderboard/overview.hpp>
+#include <lgabench/leaderboard/result_tables.hpp>
 #include <lgabench/leaderboard/titles.hpp>
 #include <lgabench/report/about_suite.hpp>
 #include <lgabench/report/names.hpp>
@@ -26,8 +28,8 @@ using report::reading;
 using report::Section;
 using report::Span;
 
-// A ranking's rows; `board` is where its links find the board.
-Grid short_grid(const NamedTable& table, const fs::path& board) {
+// A ranking's rows.
+Grid short_grid(const NamedTable& table) {
   Grid grid;
   grid.name = table.setting.name();
   grid.caption = title_of(table);
@@ -37,20 +39,19 @@ Grid short_grid(const NamedTable& table, const fs::path& board) {
     const Standing& s = table.standings[i];
     report::Spans success{Span::number(score_text(s))};
     if (s.below_random) success.push_back(below_random_mark());
-    grid.rows.push_back(
-        {{},
-         {rank_span(s), Span(table.labels[i]), Span(table.policies[i]), success, Span(tier_and_marks(s)),
-          Span(s.entry->about.at("by").get<std::string>()), id_span(*s.entry, board)},
-         s.entry->identity.row.is_reference()});
+    grid.rows.push_back({{},
+                         {rank_span(s), Span(table.labels[i]), Span(table.policies[i]), success,
+                          Span(tier_and_marks(s)), Span(s.entry->about.at("by").get<std::string>()), id_span(*s.entry)},
+                         s.entry->identity.row.is_reference()});
   }
   return grid;
 }
 
-void add_table(Section& section, const NamedTable& table, const fs::path& board = "") {
+void add_table(Section& section, const NamedTable& table) {
   section.add<Paragraph>(reading, {{what_was_played(table.setting) + " " + words_of(table.ranking, &table.track)}});
-  if (!table.standings.empty()) section.add<Grid>(reading, short_grid(table, board));
+  if (!table.standings.empty()) section.add<Grid>(reading, short_grid(table));
   if (auto note = below_random_note(table.standings)) section.add<Paragraph>(reading, std::move(*note));
-  if (auto waiting = waiting_grid(table, board)) section.add<Grid>(reading, std::move(*waiting));
+  if (auto waiting = waiting_grid(table)) section.add<Grid>(reading, std::move(*waiting));
 }
 
 // README.md: the first page's words, and every ranking.
@@ -125,8 +126,8 @@ std::string csv_of(const Suites& suites) {
   return text;
 }
 
-// A document whose text between <!-- board:SUITE-PRESET --> and <!-- /board --> is that preset's tables, as README.md
-// has them.
+// A document whose text between <!-- board:SUITE-PRESET --> and <!-- /board --> is that preset's tables, and all
+// suites' steps between <!-- board:steps --> and that.
 std::string with_tables(const fs::path& file, const fs::path& board, const Suites& suites) {
   const std::string text = read_file(file), open = "<!-- board:", close = "<!-- /board -->";
   std::string out;
@@ -137,15 +138,29 @@ std::string with_tables(const fs::path& file, const fs::path& board, const Suite
       throw InputError(fmt::format("{}: expected {} after {}SUITE-PRESET -->", file.string(), close, open));
     const std::string name = text.substr(begin + open.size(), inside - 4 - begin - open.size());
     Section section;
+    if (name == "steps") section.add<Grid>(reading, all_steps_grid(suites));
     for (const auto& suite : suites)
       for (const NamedTable& table : suite.second)
-        if (table.setting.name() == name) add_table(section, table, board);
+        if (table.setting.name() == name && section.blocks.empty()) add_results(section, table, board);
     if (section.blocks.empty()) section.add<Paragraph>(reading, {{fmt::format("No entry of {} yet.", name)}});
     out += text.substr(at, inside - at) + '\n' + markdown(section) + '\n';
     at = end;
   }
   if (at == 0) throw InputError(fmt::format("{}: expected {}SUITE-PRESET --> and {}", file.string(), open, close));
   return out + text.substr(at);
+}
+
+// Files, and of folders the Markdown in them.
+std::set<fs::path> documents_in(const std::vector<fs::path>& named) {
+  std::set<fs::path> files;
+  for (const fs::path& one : named) {
+    if (!fs::is_directory(one))
+      files.insert(one);
+    else
+      for (const auto& file : fs::directory_iterator(one))
+        if (file.path().extension() == ".md") files.insert(file.path());
+  }
+  return files;
 }
 
 bool ranks_entries(const NamedTable& table) {
@@ -189,7 +204,7 @@ std::map<fs::path, std::string> made_files(const fs::path& board, const std::vec
   for (const auto& [suite, tables] : suites)
     files[board / (suite + ".html")] =
         html(suite_document(suite, tables), suite_data(tables, scenes), "leaderboard.js");
-  for (const fs::path& document : documents)
+  for (const fs::path& document : documents_in(documents))
     files[document] = with_tables(document, fs::relative(board, fs::absolute(document).parent_path()), suites);
   return files;
 }

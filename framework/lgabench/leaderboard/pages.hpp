@@ -9,8 +9,9 @@
 
 namespace lgabench::leaderboard {
 
-/// The bytes of each file that is made: the board's, and `documents`, in which the tables of a preset stand between
-/// <!-- board:SUITE-PRESET --> and <!-- /board -->. The same entries give the same bytes.
+/// The bytes of each file that is made: the board's, and `documents` (or all Markdown of a folder), in which the tables
+/// of a preset stand between <!-- board:SUITE-PRESET --> and <!-- /board -->, and the steps of all suites between
+/// <!-- board:steps --> and that. The same entries give the same bytes.
 /// @throws InputError for a document without such a pair.
 std::map<fs::path, std::string> made_files(const fs::path& board, const std::vector<Entry>& entries,
                                            const std::vector<fs::path>& documents);

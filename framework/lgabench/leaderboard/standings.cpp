@@ -24,28 +24,33 @@ WeightsOfScenarios weights_in(const Setting& setting) {
   return all;
 }
 
-// An entry's rates on the table's test scenes: of each scenario and layout, training seed and scene the share of
-// successes over arms and numbers of demonstrations.
-std::vector<std::vector<std::vector<double>>> rates_of(const Entry& entry) {
+}  // namespace
+
+Rates rates_of(const Entry& entry, const std::string& only_arm, int only_demonstrations) {
   const Setting& setting = entry.setting;
   const WeightsOfScenarios by_scenario = weights_in(setting);
   std::map<std::pair<std::string, std::string>, std::map<std::uint64_t, std::vector<std::vector<double>>>> by_unit;
   for (const PlayedCell& cell : entry.cells) {
+    const int n = cell.place.demonstrations;
+    if (!only_arm.empty() && ((n != 0 && n != only_demonstrations) || cell.outcomes.count(only_arm) == 0)) continue;
     std::vector<double> scenes(static_cast<std::size_t>(setting.episodes));
     const ArmWeights& weights = by_scenario.at(cell.place.scenario);
     for (const auto& [arm, letters] : cell.outcomes) {
       const auto own = weights.find(arm);
-      const double weight = own != weights.end() ? own->second
-                            : weights.empty()    ? 1 / static_cast<double>(cell.outcomes.size())
-                                                 : 0;
+      const double weight = !only_arm.empty()      ? arm == only_arm
+                            : own != weights.end() ? own->second
+                            : weights.empty()      ? 1 / static_cast<double>(cell.outcomes.size())
+                                                   : 0;
       for (std::size_t i = 0; i < scenes.size(); ++i) scenes[i] += weight * is_success(letters[i]);
     }
     by_unit[{cell.place.scenario, cell.place.layout}][cell.place.seed].push_back(std::move(scenes));
   }
-  std::vector<std::vector<std::vector<double>>> rates;
+  Rates rates;
   for (const Setting::Scenario& scenario : setting.scenarios)
     for (const std::string& layout : setting.layouts) {
-      const auto& by_seed = by_unit.at({scenario.id, layout});
+      const auto played = by_unit.find({scenario.id, layout});
+      if (played == by_unit.end()) continue;  // a scenario without the arm
+      const auto& by_seed = played->second;
       auto& unit = rates.emplace_back();
       for (const std::uint64_t seed : setting.seeds) {
         const auto own = by_seed.find(seed);  // one that learns nothing plays shared scenes once, for all seeds
@@ -57,6 +62,8 @@ std::vector<std::vector<std::vector<double>>> rates_of(const Entry& entry) {
     }
   return rates;
 }
+
+namespace {
 
 void add_rates(Standing& standing) {
   const Entry& entry = *standing.entry;
@@ -199,7 +206,7 @@ std::string policy_of(const Entry& entry) {
 
 std::vector<Standing> standings(const std::vector<const Entry*>& table, const Track& track, Ranking ranking) {
   std::vector<Standing> all;
-  std::vector<std::vector<std::vector<std::vector<double>>>> rates;
+  std::vector<Rates> rates;
   for (const Entry* entry : table) {
     if (entry->is_withdrawn() || !entry->was_replayed()) continue;
     if (ranking == Ranking::papers_network && !entry->identity.row.is_reference() && policy_of(*entry) != "regression")

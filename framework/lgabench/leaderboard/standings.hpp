@@ -33,6 +33,12 @@ struct Standing {
   double lm_queries = 0, lm_tokens = 0, learn_s = 0;  // of a cell that did not fail, on average
 };
 
+/// Shares of successes by scenario (and layout), training seed and test scene.
+using Rates = std::vector<std::vector<std::vector<double>>>;
+/// An entry's, over all arms and numbers of demonstrations; with an arm those of it alone, at one number of
+/// demonstrations, in the scenarios that have it.
+Rates rates_of(const Entry& entry, const std::string& only_arm = "", int only_demonstrations = 0);
+
 /// The mark of an entry whose answers are a file that its authors wrote, which may be a copy of the truth.
 inline constexpr const char* as_submitted = "answers as submitted";
 

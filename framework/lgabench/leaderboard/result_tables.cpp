@@ -1,0 +1,154 @@
+#include <lgabench/leaderboard/result_tables.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <lgabench/core/rounding.hpp>
+#include <lgabench/leaderboard/areas.hpp>
+#include <lgabench/leaderboard/board_steps.hpp>
+#include <lgabench/leaderboard/titles.hpp>
+#include <lgabench/report/about_suite.hpp>
+#include <lgabench/report/bootstrap.hpp>
+
+namespace lgabench::leaderboard {
+namespace {
+
+using report::Grid;
+using report::Paragraph;
+using report::reading;
+using report::Span;
+
+// The arms of a preset, in the order in which its scenarios name them.
+std::vector<std::string> arms_of(const Setting& setting) {
+  std::vector<std::string> arms;
+  for (const Setting::Scenario& scenario : setting.scenarios)
+    for (const std::string& arm : scenario.arms)
+      if (std::find(arms.begin(), arms.end(), arm) == arms.end()) arms.push_back(arm);
+  return arms;
+}
+
+// The suite's main arm and number of demonstrations, where the preset has them; else its first arm and its most.
+std::pair<std::string, int> main_of(const Setting& setting) {
+  const report::AboutSuite about = report::about_suite(setting.suite);
+  const std::vector<std::string> arms = arms_of(setting);
+  const bool has_arm = std::find(arms.begin(), arms.end(), about.main_arm) != arms.end();
+  const std::vector<int>& numbers = setting.demonstrations;
+  const bool has_number = about.main_demonstrations &&
+                          std::find(numbers.begin(), numbers.end(), *about.main_demonstrations) != numbers.end();
+  return {has_arm ? about.main_arm : arms.front(), has_number ? *about.main_demonstrations : numbers.back()};
+}
+
+// A row's name, with its policy and answers where they are not the usual ones; reference rows slanted.
+Grid::Row named_row(const NamedTable& table, std::size_t i) {
+  const Entry& entry = *table.standings[i].entry;
+  const bool reference = entry.identity.row.is_reference();
+  return {{}, {Span(table.labels[i]), Span(table.policies[i]), Span(reference ? "" : answers_label(entry))}, reference};
+}
+
+Grid grid_of(const NamedTable& table, const std::string& name, std::string caption, std::vector<std::string> columns) {
+  Grid grid;
+  grid.name = table.setting.name() + "_" + name;
+  grid.caption = std::move(caption);
+  grid.heads = {"method", "policy", "answers"};
+  for (std::string& column : columns) grid.heads.emplace_back(std::move(column));
+  grid.align = "lll" + std::string(columns.size(), 'r');
+  return grid;
+}
+
+double mean_of(const Rates& rates) {
+  std::vector<double> scenarios;
+  for (const auto& policies : rates) {
+    std::vector<double> means;
+    for (const std::vector<double>& scenes : policies) means.push_back(report::mean(scenes));
+    scenarios.push_back(report::mean(means));
+  }
+  return report::mean(scenarios);
+}
+
+Grid along_demonstrations(const NamedTable& table, const std::string& arm) {
+  const Setting& setting = table.setting;
+  std::vector<std::string> columns;
+  for (const int n : setting.demonstrations) columns.push_back(std::to_string(n));
+  Grid grid = grid_of(table, "demonstrations",
+                      fmt::format("Success in {}, by demonstrations", Titles(setting.suite).arm(arm)), columns);
+  for (std::size_t i = 0; i < table.standings.size(); ++i) grid.rows.push_back(named_row(table, i));
+  for (const int n : setting.demonstrations) {
+    std::vector<Rates> rates;
+    for (const Standing& s : table.standings) rates.push_back(rates_of(*s.entry, arm, n));
+    const report::SharedResamples resamples(rates, setting.shared_scenes(),
+                                            fmt::format("leaderboard/results/{}/{}/{}", hash(setting), arm, n));
+    for (std::size_t i = 0; i < rates.size(); ++i) {
+      const report::Interval interval = resamples.interval(i);
+      grid.rows[i].cells.emplace_back(Span::number(
+          fmt::format("{} [{}, {}]", fixed(mean_of(rates[i])), fixed(interval.low), fixed(interval.high))));
+    }
+  }
+  return grid;
+}
+
+Grid by_arm(const NamedTable& table, const std::vector<std::string>& arms, int n) {
+  const Titles titles(table.setting.suite);
+  std::vector<std::string> columns;
+  for (const std::string& arm : arms) columns.push_back(titles.arm(arm));
+  Grid grid = grid_of(table, "arms", fmt::format("Success in every arm, {} demonstrations", n), columns);
+  for (std::size_t i = 0; i < table.standings.size(); ++i) {
+    grid.rows.push_back(named_row(table, i));
+    for (const std::string& arm : arms)
+      grid.rows.back().cells.emplace_back(Span::number(fixed(mean_of(rates_of(*table.standings[i].entry, arm, n)))));
+  }
+  return grid;
+}
+
+// Markdown shows no captions.
+void add_captioned(report::Section& section, Grid grid) {
+  section.add<Paragraph>(reading, {{grid.caption + ":"}});
+  section.add<Grid>(reading, std::move(grid));
+}
+
+}  // namespace
+
+void add_results(report::Section& section, const NamedTable& table, const fs::path& board) {
+  const Setting& setting = table.setting;
+  section.add<Paragraph>(
+      reading,
+      {{what_was_played(setting) + " Ranks and episodes: ",
+        Span::link(Titles(setting.suite).suite(), (board / (setting.suite + ".html")).generic_string()), "."}});
+  if (table.standings.empty()) return;
+  if (const auto steps = steps_of(table.standings)) {
+    add_captioned(section, steps_grid(*steps, setting.suite, setting.name() + "_steps"));
+    section.add<Paragraph>(reading, {{report::words_of_steps}});
+  }
+  const auto [arm, n] = main_of(setting);
+  add_captioned(section, along_demonstrations(table, arm));
+  if (const std::vector<std::string> arms = arms_of(setting); arms.size() > 1)
+    add_captioned(section, by_arm(table, arms, n));
+}
+
+Grid all_steps_grid(const Suites& suites) {
+  Grid grid;
+  grid.name = "steps";
+  grid.caption = "Success by what one policy is told, in each suite's main arm";
+  grid.heads = {"suite", "scenes", "n", "pixels", "labels", "language", "truth", "language adds", "left to win"};
+  grid.align = "llrrrrrrr";
+  for (const auto& [suite, tables] : suites) {
+    const Titles titles(suite);
+    for (const NamedTable& table : tables) {
+      if (table.track.kind != Track::abstraction || table.standings.empty()) continue;
+      const auto steps = steps_of(table.standings);
+      if (!steps) continue;
+      Grid::Row row{{},
+                    {Span::link(titles.suite(), "results/" + suite + ".md"), Span(titles.arm(steps->arm)),
+                     Span::number(std::to_string(steps->demonstrations))}};
+      for (const double success : steps->success) row.cells.emplace_back(Span::number(fixed(success)));
+      const report::Step& language = steps->steps[1];
+      row.cells.emplace_back(Span::number(
+          fmt::format("{} {}", signed_text(language.difference), report::signed_interval(language.interval))));
+      row.cells.emplace_back(Span::number(signed_text(steps->steps[2].difference)));
+      grid.rows.push_back(std::move(row));
+    }
+  }
+  return grid;
+}
+
+}  // namespace lgabench::leaderboard

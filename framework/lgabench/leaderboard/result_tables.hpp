@@ -1,0 +1,17 @@
+// What documents show of the board: the steps of all suites, and each table arm by arm.
+#pragma once
+#include <lgabench/leaderboard/overview.hpp>
+
+namespace lgabench::leaderboard {
+
+/// The first ranking of a preset, for a document from which `board` is the way to the board: each row's success in the
+/// suite's main arm along the demonstrations with 95 % intervals over test scenes and training seeds, then in every arm
+/// at the suite's main number of demonstrations, and the steps where their four rows are there. Of perturbed scenes the
+/// ranking stands in their place.
+void add_results(report::Section& section, const NamedTable& table, const fs::path& board);
+
+/// A line for each table of the abstraction track that has the steps: success by what the policy is told, what language
+/// adds to labels, and what is left between language and the truth.
+report::Grid all_steps_grid(const Suites& suites);
+
+}  // namespace lgabench::leaderboard
