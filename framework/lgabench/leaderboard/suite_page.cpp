@@ -69,6 +69,10 @@ Names names_of(const std::vector<Standing>& all, const Labels& words) {
     ++times[name];
     labels.push_back(label_of(words, *s.entry, options));
     policies.push_back(policy_label(words, *s.entry));
+    // One model's answers to all commands, where "recorded" may be several models'.
+    const auto* from = std::get_if<RecordedAnswers>(&identity.answers);
+    if (from && from->source != "recorded" && !identity.row.is_reference())
+      labels.back() += ", answers " + from->source;
     ++labelled[{labels.back(), policies.back()}];
   }
   for (std::size_t i = 0; i < names.size(); ++i)
