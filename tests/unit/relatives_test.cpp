@@ -12,6 +12,7 @@
 #include <lgabench/learning/inputs.hpp>
 #include <lgabench/plugin/loader.hpp>
 
+#include "../../baselines/class_copies.hpp"
 #include "../engine_under_test.hpp"
 #include "testing.hpp"
 
@@ -23,6 +24,18 @@ struct Silent : TrainingLog {
   long long last = 0;
 };
 
+std::vector<Demonstration> demonstrations_of(const Scenario& scenario) {
+  const Instruction instruction{scenario.commands.front().utterance, scenario.commands.front().truth};
+  const auto environment = make_environment(scenario, make_engine());
+  environment->show_shadows(true);
+  std::vector<Demonstration> all;
+  for (int i = 0; i < 4; ++i) {
+    Observation seen = environment->reset(training_scene(scenario, "continuous", {}, 1, i));
+    all.push_back({instruction, {{std::move(seen), environment->expert_action()}}});
+  }
+  return all;
+}
+
 // A command, demonstrations of its truth, a row that learns from them, and another scene.
 class Relatives : public testing::Test {
  protected:
@@ -33,11 +46,12 @@ class Relatives : public testing::Test {
     options["epochs"] = 1;
     const Json all = resolve_options(plugin, options);
     method = load_method(plugin);
-    EXPECT_EQ(method->needs(all).shadows,
-              id == "masked_bc" || id == "texture_aug" || id == "object_dropout" || id == "erase");
+    const std::set<std::string> repaint{"masked_bc", "texture_aug", "class_aug", "object_dropout", "erase"};
+    EXPECT_EQ(method->needs(all).shadows, repaint.count(id) == 1);
     RecordedLanguageModel lm(scenario, scenario.recorded);
     TruthAsHuman human(scenario.commands);
     Services services{lm, human, all, seed, log, find_environment("tabletop").action_space()};
+    method->select({instruction.utterance, scenario.task}, scenario.space, services);
     auto policy = method->learn(demonstrations, services);
     method.reset();  // a policy outlives it
     return policy;
@@ -53,14 +67,9 @@ class Relatives : public testing::Test {
   // The pictures that the last act() read, rgb first.
   static std::vector<std::uint8_t> read_by(const Policy& policy) { return policy.shown().pictures.at(0).rgb; }
 
-  Relatives() {
+  Relatives() : demonstrations(demonstrations_of(scenario)) {
     const auto environment = make_environment(scenario, make_engine());
     environment->show_shadows(true);
-    for (int i = 0; i < 4; ++i) {
-      const Scene shown = training_scene(scenario, "continuous", {}, 1, i);
-      Observation seen = environment->reset(shown);
-      demonstrations.push_back({instruction, {{std::move(seen), environment->expert_action()}}});
-    }
     probe = environment->reset(test_scene(scenario, "continuous", scenario.tests.front().id, 0, 0));
     others = unselected(probe, instruction.selection);
   }
@@ -95,6 +104,157 @@ TEST_F(Relatives, CopiesAreWhatTheRowsSay) {
     }
   }
   EXPECT_FALSE(learned_from(*masked, probe));
+}
+
+TEST_F(Relatives, CopiesHaveMoreOfTheSelectedClass) {
+  const auto policy = learned("class_aug", {{"copies", 4}});
+  const ClassCopies of_class(demonstrations, find_environment("tabletop").action_space(), scenario.space.textures);
+  for (int row = 0; row < 4; ++row)
+    for (int copy = 0; copy < 4; ++copy) {
+      Step step = demonstrations[static_cast<std::size_t>(row)].steps.front();
+      RandomStream draws = stream(row, copy);
+      if (copy % 2 == 0)
+        of_class.another_look(step, instruction.selection.target, draws);
+      else
+        of_class.another_member(step, instruction.selection.target, draws);
+      EXPECT_TRUE(learned_from(*policy, step.observation)) << row << " " << copy;
+    }
+}
+
+TEST_F(Relatives, LooksAreThoseThatAreSelectedWithTheTargetsType) {
+  const ActionSpace& actions = find_environment("tabletop").action_space();
+  const ClassCopies of_class(demonstrations, actions, scenario.space.textures);
+  const Step& step = demonstrations.front().steps.front();
+  const std::uint8_t target = *taken(demonstrations.front(), actions);
+  std::string texture;
+  std::vector<Instance> others;  // in other textures than it and each other
+  std::set<std::string> met;
+  for (const Instance& instance : step.observation.instances)
+    if (instance.id == target) met.insert(texture = instance.texture);
+  for (const Demonstration& one : demonstrations)
+    for (const Instance& instance : one.steps.front().observation.instances)
+      if (instance.object_type != "heart" && !is_place(instance.object_type) && met.insert(instance.texture).second)
+        others.push_back(instance);
+  ASSERT_GE(others.size(), 2u);
+  std::set<Colour> allowed;  // of what has the one texture that is selected with the type
+  for (const Demonstration& one : demonstrations) {
+    const Observation& seen = one.steps.front().observation;
+    for (const Instance& instance : seen.instances)
+      for (std::size_t i = 0; i < seen.ids.size() && instance.texture == others[0].texture; ++i)
+        if (seen.ids[i] == instance.id) allowed.insert({seen.rgb[3 * i], seen.rgb[3 * i + 1], seen.rgb[3 * i + 2]});
+  }
+  Meaning pairs({"heart"}, {texture, others[0].texture});
+  pairs.sets.push_back({{others[1].object_type}, scenario.space.textures});
+  for (int i = 0; i < 20; ++i) {
+    Step copy = step;
+    RandomStream draws = stream(0, i);
+    of_class.another_look(copy, pairs, draws);
+    EXPECT_EQ(copy.label, step.label);
+    int changed = 0;
+    for (std::size_t p = 0; p < step.observation.ids.size(); ++p) {
+      const std::uint8_t *before = &step.observation.rgb[3 * p], *after = &copy.observation.rgb[3 * p];
+      const bool of_target = step.observation.ids[p] == target;
+      const bool differs = !std::equal(before, before + 3, after);
+      changed += differs;
+      EXPECT_TRUE(of_target || !differs);
+      EXPECT_TRUE(!of_target || allowed.count({after[0], after[1], after[2]}));
+    }
+    EXPECT_GT(changed, 50);
+  }
+  const auto repainted = [&](const Meaning& meaning) {
+    Step copy = step;
+    RandomStream draws = stream(0, 0);
+    of_class.another_look(copy, meaning, draws);
+    return copy.observation.rgb;
+  };
+  RandomStream draws = stream(0, 0);
+  EXPECT_EQ(repainted({{"heart"}, scenario.space.textures}),
+            repaint(step.observation, {target}, RandomTextures{draws}).rgb);
+  EXPECT_EQ(repainted({{"heart"}, {texture}}), step.observation.rgb) << "no other texture";
+  EXPECT_EQ(repainted({{"star"}, scenario.space.textures}), step.observation.rgb) << "of another type";
+}
+
+// Whether `copy` is `step` without its target and with what `member` took, moved by whole pixels to where nothing
+// stands, as its label is, of which so many places move.
+bool is_moved(const Step& copy, const Demonstration& of_step, const Demonstration& member, const Background& usual,
+              std::size_t places) {
+  const ActionSpace& actions = find_environment("tabletop").action_space();
+  const Step &step = of_step.steps.front(), &from = member.steps.front();
+  const std::uint8_t gone = *taken(of_step, actions), id = *taken(member, actions);
+  const PictureSize size = step.observation.size;
+  const auto pixels = [&](std::size_t number, int side) {
+    const ActionNumber& of = actions.numbers[number];
+    return (copy.label[number] - from.label[number]) / (of.high - of.low) * side;
+  };
+  const double down = pixels(0, size.rows), across = pixels(1, size.columns);
+  const long rows = std::lround(down), columns = std::lround(across);
+  if (std::abs(down - double(rows)) > 1e-6 || std::abs(across - double(columns)) > 1e-6) return false;
+  Action label = from.label;
+  for (std::size_t i = 0; i < places; ++i) {
+    label[actions.places[i].down] += copy.label[0] - from.label[0];
+    label[actions.places[i].across] += copy.label[1] - from.label[1];
+  }
+  for (std::size_t i = 0; i < label.size(); ++i)
+    if (std::abs(label[i] - copy.label[i]) > 1e-9) return false;
+  Observation expected = repaint(step.observation, {gone}, usual);
+  for (int i = 0; i < static_cast<int>(size.pixels()); ++i) {
+    if (from.observation.ids[static_cast<std::size_t>(i)] != id) continue;
+    const long row = i / size.columns + rows, column = i % size.columns + columns;
+    if (row < 0 || column < 0 || row >= size.rows || column >= size.columns) return false;
+    const auto to = static_cast<std::size_t>(row * size.columns + column);
+    if (step.observation.ids[to] != 0 && step.observation.ids[to] != gone) return false;
+    std::copy_n(&from.observation.rgb[3 * static_cast<std::size_t>(i)], 3, &expected.rgb[3 * to]);
+  }
+  return expected.rgb == copy.observation.rgb;
+}
+
+TEST_F(Relatives, MembersStandWhereNothingStoodAndTheirLabelsWithThem) {
+  for (const auto& [id, places] : {std::pair("heart", 1u), std::pair("rotate_block", 2u)}) {
+    const Scenario task = load_scenario(id);
+    const std::vector<Demonstration> shown = demonstrations_of(task);
+    const ClassCopies of_class(shown, find_environment("tabletop").action_space(), task.space.textures);
+    const Background usual = usual_background(shown);
+    std::set<std::size_t> members;
+    std::set<Action> labels;
+    for (int i = 0; i < 20; ++i) {
+      const Demonstration& of = shown[static_cast<std::size_t>(i) % shown.size()];
+      const auto put = [&](const Meaning& meaning) {
+        Step copy = of.steps.front();
+        RandomStream draws = stream(0, i);
+        of_class.another_member(copy, meaning, draws);
+        return copy;
+      };
+      const Step copy = put(of.instruction.selection.target), again = put(of.instruction.selection.target);
+      EXPECT_EQ(copy.label, again.label);
+      EXPECT_EQ(copy.observation.rgb, again.observation.rgb);
+      std::size_t found = shown.size();
+      for (std::size_t member = 0; member < shown.size(); ++member)
+        if (is_moved(copy, of, shown[member], usual, places)) found = member;
+      EXPECT_LT(found, shown.size()) << id << " " << i;
+      members.insert(found);
+      labels.insert(copy.label);
+      EXPECT_EQ(put({{"no such type"}, task.space.textures}).observation.rgb, of.steps.front().observation.rgb);
+    }
+    EXPECT_EQ(members.size(), shown.size());
+    EXPECT_EQ(labels.size(), 20u);
+  }
+}
+
+TEST_F(Relatives, AClassIsNotMovedWhereThatChangesWhatIsMeant) {
+  const PluginInfo& plugin = catalogue.find("method", "class_aug");
+  const auto refusal = [&](const char* id, const char* meaning) {
+    const Scenario of = load_scenario(id);
+    const Json all = resolve_options(plugin, {{"meaning", meaning}});
+    method = load_method(plugin);
+    RecordedLanguageModel lm(of, of.recorded);
+    TruthAsHuman human(of.commands);
+    Services services{lm, human, all, seed, log, find_environment("tabletop").action_space()};
+    return message_of<MethodError>(
+        [&] { method->select(command_of(of.task, of.commands.front().utterance), of.space, services); });
+  };
+  EXPECT_SAYS(refusal("sweep_block_without_touching_pan", "flat"), "got one with the object to be avoided, on which");
+  EXPECT_SAYS(refusal("stack_small_block_on_hexagon", "flat"), "got one with the object to put it on, on which");
+  EXPECT_SAYS(refusal("words_relation_leftmost_drink", "structured"), "a meaning without a rule");
 }
 
 TEST_F(Relatives, TakeNoMoreStepsUnlessToldTo) {
