@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the small figures of docs/results.md's first table, and README's curves of clutter, from the tables further down in it.
+"""Draws the small figures of docs/results.md's first table, and README's curves of clutter, from the tables of docs/results.
 
 Usage: docs/pictures/findings.py [OUTPUT_DIR]
 """
@@ -11,51 +11,60 @@ HERE = pathlib.Path(__file__).parent
 WIDTH, ROW, LABEL, BAR = 272, 18, 132, 100  # pixels: a column of a table
 METHOD, REFERENCE = "#0b5cad", "#87919c"
 
-# figure -> (label, start of the heading of the table's section, start of its row, column) of each bar; references are grey.
+# figure -> (label, page of docs/results, start of the heading of the table's section, row, column) of each bar; references are grey. A
+# row is named by its first cells: on the board method and policy.
+BOARD, MASK = "On the board: leaderboard", "Ablation, sees the mask of φ̂, scenes from the truth"
+PICTURE, RANDOM = "Ablation, sees the picture, scenes from the truth", "Random visible object"
+RIGHT, SEEN, NEW = "The right φ̂", "seen, 7 commands", "unseen, 7 commands"
+AREAS, NETWORK, LIGHT = "More of the board's runs", "Perturbations with", "`light_intensity`"
 FIGURES = {
-    "clutter": [("true mask", "clutter: ", "Human", 2), ("mask of φ̂, LGA", "clutter: ", "LGA", 2),
-                ("GCBC-SEG", "clutter: ", "GCBC-SEG", 2), ("picture, words", "clutter: ", "GCBC without DART", 2),
-                ("random object", "clutter: ", "*random", 2)],
-    "reproduction": [("LGA", "q1: success", "LGA", 5), ("Human", "q1: success", "Human", 5),
-                     ("GCBC-SEG", "q1: success", "GCBC-SEG", 5), ("random object", "q1: success", "*random", 5)],
-    "policy": [("mask, network", "factorial on the", "the truth", 1),
-               ("mask, heat_map", "factorial on the", "the truth, `policy=heat_map`", 1),
-               ("picture, network", "factorial on the", "the truth", 4),
-               ("picture, heat_map", "factorial on the", "the truth, `policy=heat_map`", 4)],
-    "shift": [("LGA, control", "q2: other", "LGA", 1), ("LGA, distractor", "q2: other", "LGA", 3),
-              ("SEG, control", "q2: other", "GCBC-SEG", 1),
-              ("SEG, distractor", "q2: other", "GCBC-SEG", 3)],
-    "errors": [("missing, one other", "What an error", "missing 0.2", 1), ("missing, six near", "What an error", "missing 0.2", 5),
-               ("added, one other", "What an error", "added 0.2", 1), ("added, six near", "What an error", "added 0.2", 5)],
-    "commands": [("LGA, heard", "many_commands: ", "LGA", 5), ("LGA, new", "many_commands: ", "LGA", 6),
-                 ("SEG, heard", "many_commands: ", "GCBC-SEG", 5), ("SEG, new", "many_commands: ", "GCBC-SEG", 6),
-                 ("random object", "many_commands: ", "*random", 6)],
-    "knowledge": [("mask (LGA)", "knowledge: ", "`lga`", 3), ("picture, in training", "knowledge: ", "`erase+when=both`", 3),
-                  ("data", "knowledge: ", "`texture_aug`", 3), ("loss", "knowledge: ", "`masked_bc`", 3),
-                  ("nowhere (dropout)", "knowledge: ", "`object_dropout`", 3), ("random object", "knowledge: ", "*random", 3)],
-    "perturbations": [("mask, either", "perturbations with", "`light_intensity`", 2),
-                      ("beside, heat_map", "perturbations: ", "`light_intensity`", 3), ("beside, network", "perturbations with", "`light_intensity`", 3),
-                      ("SEG, heat_map", "perturbations: ", "`light_intensity`", 6), ("SEG, network", "perturbations with", "`light_intensity`", 4)],
-    "words": [("a feature each", "words: ", "**all**", 2), ("one meaning", "words: ", "**all**", 3),
-              ("names alone", "words: ", "**all**", 4)],
+    "clutter": [("true mask", "clutter", BOARD, "Human|heat map", "5"), ("mask of φ̂, LGA", "clutter", BOARD, "LGA|heat map", "5"),
+                ("GCBC-SEG", "clutter", BOARD, "GCBC-SEG|heat map", "5"),
+                ("picture, words", "clutter", BOARD, "GCBC, without DART|heat map", "5"), ("random object", "clutter", BOARD, RANDOM, "5")],
+    "reproduction": [("LGA", "q1", "The paper's figure", "LGA", "50"), ("Human", "q1", "The paper's figure", "Human (true φ̂, no human data)", "50"),
+                     ("GCBC-SEG", "q1", "The paper's figure", "GCBC-SEG", "50"),
+                     ("random object", "q1", "The paper's figure", "*random visible object*", "50")],
+    "policy": [("mask, network", "factorial", BOARD, f"{MASK}|paper’s network", "50"),
+               ("mask, heat_map", "factorial", BOARD, f"{MASK}|heat map", "50"),
+               ("picture, network", "factorial", BOARD, f"{PICTURE}|paper’s network", "50"),
+               ("picture, heat_map", "factorial", BOARD, f"{PICTURE}|heat map", "50")],
+    "shift": [("LGA, control", "q2", "q2 with", "LGA", "control"), ("LGA, distractor", "q2", "q2 with", "LGA", "distractor"),
+              ("SEG, control", "q2", "q2 with", "GCBC-SEG", "control"), ("SEG, distractor", "q2", "q2 with", "GCBC-SEG", "distractor")],
+    "errors": [(f"{kind}, {words}", "clutter", "Errors in", f"{kind} 0.2", arm) for kind in ("missing", "added")
+               for words, arm in (("one other", "1 other"), ("six near", "6 near misses"))],
+    "commands": [("LGA, heard", "many_commands", BOARD, "LGA|heat map", SEEN), ("LGA, new", "many_commands", BOARD, "LGA|heat map", NEW),
+                 ("SEG, heard", "many_commands", BOARD, "GCBC-SEG|heat map", SEEN), ("SEG, new", "many_commands", BOARD, "GCBC-SEG|heat map", NEW),
+                 ("random object", "many_commands", BOARD, RANDOM, NEW)],
+    "knowledge": [(label, "knowledge", RIGHT, row, "`clutter`") for label, row in (
+        ("mask (LGA)", "`lga`"), ("picture, in training", "`erase+when=both`"), ("data", "`texture_aug`"), ("loss", "`masked_bc`"),
+        ("nowhere (dropout)", "`object_dropout`"), ("random object", "*random visible object*"))],
+    "perturbations": [("mask, either", "perturbations", NETWORK, LIGHT, "LGA"), ("beside, heat_map", "perturbations", AREAS, LIGHT, "LGA-S"),
+                      ("beside, network", "perturbations", NETWORK, LIGHT, "LGA-S"), ("SEG, heat_map", "perturbations", AREAS, LIGHT, "GCBC-SEG"),
+                      ("SEG, network", "perturbations", NETWORK, LIGHT, "GCBC-SEG")],
+    "words": [(label, "words", "What is selected", "**all**", asked) for label, asked in (
+        ("a feature each", "asked of each feature (LGA)"), ("one meaning", "asked what is meant"), ("names alone", "the names in the command"))],
 }
 
 
 def cell(page, heading, row, column):
     """(rate, low, high) of a table's cell; the interval's ends are the rate where it has none. The control's very actions are 1."""
-    section = re.split(r"^#+ ", page, flags=re.M)
-    section = next(part for part in section if part.startswith(heading))
-    lines = [[part.strip() for part in line.split("|")[1:-1]] for line in section.splitlines() if line.startswith("| ")]
-    cells = min((line for line in lines if line[0].startswith(row)), key=lambda line: line[0] != row)  # the very row, if there
-    rate, low, high = re.match(r"([\d.]+)(?: \[([\d.]+), ([\d.]+)\])?", cells[column].replace("=", "1")).groups()
-    return float(rate), float(low or rate), float(high or rate)
+    sections = re.split(r"^#+ ", (HERE.parent / f"results/{page}.md").read_text(), flags=re.M)
+    section = next(part for part in sections if part.startswith(heading))
+    for table in re.findall(r"(?:^\|.*\n)+", section, re.M):
+        head, _, *lines = ([part.strip() for part in line.split("|")[1:-1]] for line in table.splitlines())
+        cells = [line for line in lines if column in head and f"{'|'.join(line)}|".startswith(f"{row}|")]
+        if cells:
+            found = re.match(r"([\d.]+)(?: \[([\d.]+), ([\d.]+)\])?", cells[0][head.index(column)].replace("=", "1"))
+            rate, low, high = found.groups()
+            return float(rate), float(low or rate), float(high or rate)
+    raise SystemExit(f"{page}, {heading}: no table with {row} and {column}")
 
 
-def figure(page, bars):
+def figure(bars):
     """A chart of horizontal bars with their numbers and intervals."""
     height, parts = ROW * len(bars) + 6, []
     for i, (label, *place) in enumerate(bars):
-        rate, low, high = cell(page, *place)
+        rate, low, high = cell(*place)
         y = ROW * i + 4
         x, left, right = (LABEL + BAR * value for value in (rate, low, high))
         color = REFERENCE if label.startswith("random") else METHOD
@@ -63,19 +72,20 @@ def figure(page, bars):
                   f'<rect x="{LABEL}" y="{y}" width="{x - LABEL:.1f}" height="{ROW - 5}" fill="{color}"/>',
                   f'<path d="M{left:.1f} {y + 7}H{right:.1f}" stroke="#1b1f24" stroke-width="1.5"/>',
                   f'<text x="{max(x, right) + 6:.1f}" y="{y + 11}" fill="#1b1f24">{rate:.2f}</text>']
-    said = "; ".join(f"{label} {cell(page, *place)[0]:.2f}" for label, *place in bars)
+    said = "; ".join(f"{label} {cell(*place)[0]:.2f}" for label, *place in bars)
     return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}" role="img" '
             f'aria-label="{said}" font-family="Helvetica,Arial,sans-serif" font-size="12"><rect width="100%" height="100%" fill="#ffffff"/>'
             + "".join(parts) + "</svg>\n")
 
 
 # README's curves: what the policy sees, and the row that shows it, of one table; the numbers of demonstrations are its columns.
-CURVES = [("true mask", "Human", "#0b5cad"), ("mask of φ̂ (LGA)", "LGA", "#d1495b"), ("mask of any object", "mask of any object", "#7a5195"),
-          ("picture, mask of all, words (GCBC-SEG)", "GCBC-SEG", "#2e7d4f"), ("picture and words", "GCBC without DART", "#b26a00")]
-CURVES_IN, NUMBERS = "clutter: ", ("1", "5", "20")
+CURVES = [("true mask", "Human|heat map", "#0b5cad"), ("mask of φ̂ (LGA)", "LGA|heat map", "#d1495b"),
+          ("mask of any object", "Mask of any object|heat map", "#7a5195"),
+          ("picture, mask of all, words (GCBC-SEG)", "GCBC-SEG|heat map", "#2e7d4f"), ("picture and words", "GCBC, without DART|heat map", "#b26a00")]
+NUMBERS = ("1", "5", "20")
 
 
-def curves(page):
+def curves():
     """Success against demonstrations, a line a row with its intervals, and what each shows beside its end."""
     left, right, top, bottom, width = 44, 250, 14, 214, 520
     xs = [left + (right - left) * i / (len(NUMBERS) - 1) for i in range(len(NUMBERS))]
@@ -87,7 +97,7 @@ def curves(page):
     parts += [f'<text x="{x:.1f}" y="{bottom + 16}" text-anchor="middle">{number}</text>' for x, number in zip(xs, NUMBERS)]
     ends = []
     for label, row, color in CURVES:
-        rates = [cell(page, CURVES_IN, row, column + 1) for column in range(len(NUMBERS))]
+        rates = [cell("clutter", BOARD, row, number) for number in NUMBERS]
         path = "L".join(f"{x:.1f} {y_of(rate):.1f}" for x, (rate, _, _) in zip(xs, rates))
         parts += [f'<path d="M{path}" fill="none" stroke="{color}" stroke-width="2"/>']
         parts += [f'<path d="M{x:.1f} {y_of(low):.1f}V{y_of(high):.1f}" stroke="{color}" stroke-width="1.5"/>' for x, (_, low, high) in zip(xs, rates)]
@@ -103,10 +113,10 @@ def curves(page):
 
 
 def main():
-    page, out = (HERE.parent / "results.md").read_text(), pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else HERE)
+    out = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else HERE)
     for name, bars in FIGURES.items():
-        (out / f"finding_{name}.svg").write_text(figure(page, bars))
-    (out / "inputs.svg").write_text(curves(page))
+        (out / f"finding_{name}.svg").write_text(figure(bars))
+    (out / "inputs.svg").write_text(curves())
 
 
 if __name__ == "__main__":

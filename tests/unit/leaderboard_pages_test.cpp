@@ -346,6 +346,7 @@ TEST(Board, DocumentsHaveSuccessByArmAndDemonstrations) {
   fs::create_directories(board / "entries");
   fs::create_directories(documents);
   write_file(document, before + after);
+  write_file(documents / "engines.md", "# By hand alone\n");
   build(board, {documents});
   EXPECT_EQ(read_file(document), before + "\nNo entry of q1-board yet.\n\n" + after);
   const Entry entry = made_entry(small_setting(), "a", .5);

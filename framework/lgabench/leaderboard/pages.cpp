@@ -150,7 +150,7 @@ std::string with_tables(const fs::path& file, const fs::path& board, const Suite
   return out + text.substr(at);
 }
 
-// Files, and of folders the Markdown in them.
+// Files, and of folders the Markdown with markers in it.
 std::set<fs::path> documents_in(const std::vector<fs::path>& named) {
   std::set<fs::path> files;
   for (const fs::path& one : named) {
@@ -158,7 +158,8 @@ std::set<fs::path> documents_in(const std::vector<fs::path>& named) {
       files.insert(one);
     else
       for (const auto& file : fs::directory_iterator(one))
-        if (file.path().extension() == ".md") files.insert(file.path());
+        if (file.path().extension() == ".md" && read_file(file.path()).find("<!-- board:") != std::string::npos)
+          files.insert(file.path());
   }
   return files;
 }
