@@ -92,6 +92,12 @@ class Pages(unittest.TestCase):
             curves = pathlib.Path(made) / "inputs.svg"
             self.assertEqual((pictures / curves.name).read_text(), curves.read_text(), "docs/pictures/findings.py draws it")
             curves.unlink()
+            written = list(pathlib.Path(made).glob("*.md"))
+            self.assertEqual(len(written), 6, "a suite of the abstraction track each")
+            for rivals in written:
+                self.assertEqual((SOURCE / "docs/results" / rivals.name).read_text(), rivals.read_text(), "docs/pictures/findings.py writes it")
+                self.assertIn("| Bayes over types", rivals.read_text())
+                rivals.unlink()
             figures = sorted(file.name for file in pathlib.Path(made).iterdir())
             self.assertEqual(figures, sorted(file.name for file in pictures.glob("finding_*.svg")))
             for name in figures:
