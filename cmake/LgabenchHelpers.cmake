@@ -85,7 +85,8 @@ function(lgabench_link_data)
     cmake_path(GET directory PARENT_PATH name)
     list(APPEND tables ${name}:envs/${directory})
   endforeach()
-  foreach(pair ${tables} answers:framework/lgabench/abstraction/answers prompts:framework/lgabench/abstraction/prompts
+  foreach(pair ${tables} answers:framework/lgabench/abstraction/answers disputed:framework/lgabench/abstraction/disputed
+               prompts:framework/lgabench/abstraction/prompts
                embeddings:framework/lgabench/learning/embeddings paper:results/paper measured:results/measured formats:docs/formats
                page:framework/lgabench/report/page templates:framework/lgabench/cli/templates starters:examples/kinematic
                study:framework/lgabench/study/pages protocols:framework/lgabench/study/protocols

@@ -134,10 +134,10 @@ TEST(Board, StepsAreOfRowsWithEqualOptionsAndAddUp) {
     entries.back().identity.row.id = entries.back().identity.row.name = id;
     entries.back().identity.row.options = options;
   };
-  const auto steps = [&] {
+  const auto steps = [&](const std::string& frozen = "") {
     std::vector<const Entry*> table;
     for (const Entry& entry : entries) table.push_back(&entry);
-    return steps_of(standings(table));
+    return steps_of(standings(table), frozen);
   };
   add("gcbc_seg", .2, {{"policy", "heat_map"}});
   add("lga", .9, {{"policy", "heat_map"}, {"mask", "binary"}});
@@ -148,8 +148,8 @@ TEST(Board, StepsAreOfRowsWithEqualOptionsAndAddUp) {
   add("taken_features", .6, {{"policy", "heat_map"}, {"mask", "binary"}});
   const auto all = steps();
   ASSERT_TRUE(all);
-  EXPECT_EQ(all->arm, "near_4");
-  EXPECT_EQ(all->demonstrations, 5);
+  EXPECT_EQ(all->main.arm, "near_4");
+  EXPECT_EQ(all->main.demonstrations, 5);
   EXPECT_NEAR(all->success[0], .2, .1);
   EXPECT_NEAR(all->success[2], .9, .1);
   EXPECT_EQ(all->success[3], 1);
@@ -158,6 +158,12 @@ TEST(Board, StepsAreOfRowsWithEqualOptionsAndAddUp) {
     EXPECT_LT(all->steps[i].interval.low, all->steps[i].difference);
     EXPECT_GT(all->steps[i].interval.high, all->steps[i].difference);
   }
+  for (const auto& [answers, rate] : {std::pair("claude_track", 1.), {"gpt4_released", .3}}) {
+    add("lga", rate, {{"policy", "heat_map"}, {"mask", "binary"}});
+    entries.back().identity.answers = RecordedAnswers{answers};
+  }
+  EXPECT_EQ(steps("claude_track")->success[2], 1) << "of rows with equal options that with the frozen answers";
+  EXPECT_NEAR(steps("gpt4_released")->success[2], .3, .1);
 }
 
 TEST(Board, SuitesComeInThePapersOrderAndThoseWithoutARankLast) {

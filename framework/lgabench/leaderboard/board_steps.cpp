@@ -6,7 +6,6 @@
 
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/leaderboard/titles.hpp>
-#include <lgabench/report/about_suite.hpp>
 #include <lgabench/report/names.hpp>
 
 namespace lgabench::leaderboard {
@@ -22,13 +21,16 @@ bool has_each_of(const Json& options, const Json& some) {
 
 // The row of each stage with the options of the truth's, which has all that the others have; nullptr where there is
 // none.
-std::array<const Entry*, stages.size()> rows_of(const std::vector<Standing>& table) {
+std::array<const Entry*, stages.size()> rows_of(const std::vector<Standing>& table, const std::string& frozen) {
   std::array<const Entry*, stages.size()> rows{};
+  const auto has_frozen = [&](const Entry* entry) { return entry && to_string(entry->identity.answers) == frozen; };
   for (std::size_t i = stages.size(); i-- > 0;)
     for (const Standing& s : table) {
       const Competitor& row = s.entry->identity.row;
-      if (row.id == stages[i].method && !row.is_reference() && (!row.acts || row.acts->id == "lga") &&
+      // The labels' rule masks scene by scene, which a row that selects alone cannot hand to another's policy.
+      if (row.id == stages[i].method && !row.is_reference() && (!row.acts || (i >= 2 && row.acts->id == "lga")) &&
           policy_of(*s.entry) == "heat_map" && answers_file(s.entry->identity).empty() &&
+          (has_frozen(s.entry) || !has_frozen(rows[i])) &&
           (!rows.back() || has_each_of(rows.back()->identity.row.options, row.options)))
         rows[i] = s.entry;
     }
@@ -37,23 +39,22 @@ std::array<const Entry*, stages.size()> rows_of(const std::vector<Standing>& tab
 
 }  // namespace
 
-std::optional<BoardSteps> steps_of(const std::vector<Standing>& table) {
-  const std::array<const Entry*, stages.size()> rows = rows_of(table);
+std::optional<BoardSteps> steps_of(const std::vector<Standing>& table, const std::string& frozen,
+                                   const std::optional<Undisputed>& undisputed) {
+  const std::array<const Entry*, stages.size()> rows = rows_of(table, frozen);
   if (std::count(rows.begin(), rows.end(), nullptr) > 0) return {};
   const Setting& setting = rows.front()->setting;
-  const report::AboutSuite about = report::about_suite(setting.suite);
   BoardSteps steps;
-  steps.arm = about.main_arm;
-  steps.demonstrations = setting.demonstrations.back();
-  if (about.main_demonstrations &&
-      std::count(setting.demonstrations.begin(), setting.demonstrations.end(), *about.main_demonstrations) > 0)
-    steps.demonstrations = *about.main_demonstrations;
+  steps.main = main_column(setting);
   report::StageOutcomes outcomes{{}, {}, setting.shared_scenes()};
-  for (const Entry* row : rows) outcomes.rates.push_back(rates_of(*row, steps.arm, steps.demonstrations));
+  for (const Entry* row : rows) outcomes.rates.push_back(rates_of(*row, steps.main.arm, steps.main.demonstrations));
   const std::size_t scenarios = outcomes.rates.front().size();
   if (scenarios == 0) return {};
   outcomes.weights.assign(scenarios, 1);
-  for (std::size_t i = 0; i < steps.success.size(); ++i) steps.success[i] = report::mean_rate(outcomes, i);
+  for (std::size_t i = 0; i < steps.success.size(); ++i) {
+    steps.success[i] = report::mean_rate(outcomes, i);
+    if (undisputed) steps.undisputed[i] = success(*undisputed, *rows[i]);
+  }
   steps.steps = report::steps_of(outcomes, fmt::format("leaderboard/steps/{}/{}", hash(setting), setting.scene_seed));
   return steps;
 }
@@ -62,19 +63,26 @@ report::Grid steps_grid(const BoardSteps& steps, const std::string& suite, const
   report::Grid grid;
   grid.name = name;
   grid.caption = fmt::format("Success in {}, {} demonstrations, and what each row adds to the one above it",
-                             Titles(suite).arm(steps.arm), steps.demonstrations);
+                             Titles(suite).arm(steps.main.arm), steps.main.demonstrations);
   grid.heads = {"told", "row", "success", "added", "these scenarios", "other scenarios too"};
   grid.align = "llrrll";
+  const bool undisputed = steps.undisputed.front().has_value();
+  if (undisputed) {
+    grid.heads.insert(grid.heads.begin() + 3, "undisputed");
+    grid.align.insert(3, "r");
+  }
   for (std::size_t i = 0; i < stages.size(); ++i) {
     report::Grid::Row row{{},
                           {report::Span(stages[i].what), report::Span(report::display_name(stages[i].method)),
                            report::Span::number(fixed(steps.success[i]))}};
+    if (undisputed) row.cells.emplace_back(report::Span::number(fixed(steps.undisputed[i].value_or(0))));
+    const std::size_t added = row.cells.size();
     row.cells.resize(grid.heads.size());
     if (i > 0) {
       const report::Step& step = steps.steps[i - 1];
-      row.cells[3] = report::Span::number(signed_text(step.difference), "", report::Emphasis::strong);
-      row.cells[4] = report::Span::number(report::signed_interval(step.interval));
-      row.cells[5] = report::Span::number(report::signed_interval(step.over_commands));
+      row.cells[added] = report::Span::number(signed_text(step.difference), "", report::Emphasis::strong);
+      row.cells[added + 1] = report::Span::number(report::signed_interval(step.interval));
+      row.cells[added + 2] = report::Span::number(report::signed_interval(step.over_commands));
     }
     grid.rows.push_back(std::move(row));
   }

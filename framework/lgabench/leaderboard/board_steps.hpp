@@ -5,20 +5,23 @@
 #include <vector>
 
 #include <lgabench/leaderboard/standings.hpp>
+#include <lgabench/leaderboard/undisputed.hpp>
 #include <lgabench/report/steps.hpp>
 
 namespace lgabench::leaderboard {
 
 struct BoardSteps {
-  std::string arm;                    // the suite's main one
-  int demonstrations = 0;             // the suite's main number where the preset has it, else its most
-  std::array<double, 4> success{};    // of each stage
-  std::array<report::Step, 3> steps;  // a command of a step is a scenario here
+  MainColumn main;
+  std::array<double, 4> success{};                    // of each stage
+  std::array<std::optional<double>, 4> undisputed{};  // likewise
+  std::array<report::Step, 3> steps;                  // a command of a step is a scenario here
 };
 
 /// Of rows that place what they learned by a heat map, with equal options and shipped answers. None where one of the
-/// four is not among them, or the preset lacks the suite's main arm.
-std::optional<BoardSteps> steps_of(const std::vector<Standing>& table);
+/// four is not among them, or the preset lacks the suite's main arm. Of several rows with such options the one with the
+/// `frozen` answers (Track::answers) counts.
+std::optional<BoardSteps> steps_of(const std::vector<Standing>& table, const std::string& frozen = "",
+                                   const std::optional<Undisputed>& undisputed = {});
 
 /// The steps as a table; `name` is the file's that a page offers.
 report::Grid steps_grid(const BoardSteps& steps, const std::string& suite, const std::string& name);

@@ -28,17 +28,6 @@ std::vector<std::string> arms_of(const Setting& setting) {
   return arms;
 }
 
-// The suite's main arm and number of demonstrations, where the preset has them; else its first arm and its most.
-std::pair<std::string, int> main_of(const Setting& setting) {
-  const report::AboutSuite about = report::about_suite(setting.suite);
-  const std::vector<std::string> arms = arms_of(setting);
-  const bool has_arm = std::find(arms.begin(), arms.end(), about.main_arm) != arms.end();
-  const std::vector<int>& numbers = setting.demonstrations;
-  const bool has_number = about.main_demonstrations &&
-                          std::find(numbers.begin(), numbers.end(), *about.main_demonstrations) != numbers.end();
-  return {has_arm ? about.main_arm : arms.front(), has_number ? *about.main_demonstrations : numbers.back()};
-}
-
 // A row's name, with its policy and answers where they are not the usual ones; reference rows slanted.
 Grid::Row named_row(const NamedTable& table, std::size_t i) {
   const Entry& entry = *table.standings[i].entry;
@@ -115,36 +104,41 @@ void add_results(report::Section& section, const NamedTable& table, const fs::pa
       {{what_was_played(setting) + " Ranks and episodes: ",
         Span::link(Titles(setting.suite).suite(), (board / (setting.suite + ".html")).generic_string()), "."}});
   if (table.standings.empty()) return;
-  if (const auto steps = steps_of(table.standings)) {
+  if (const auto steps = steps_of(table.standings, table.track.answers, table.undisputed)) {
     add_captioned(section, steps_grid(*steps, setting.suite, setting.name() + "_steps"));
     section.add<Paragraph>(reading, {{report::words_of_steps}});
+    if (table.undisputed) section.add<Paragraph>(reading, {{words_of(*table.undisputed)}});
   }
-  const auto [arm, n] = main_of(setting);
+  const std::vector<std::string> arms = arms_of(setting);
+  auto [arm, n] = main_column(setting);
+  if (std::find(arms.begin(), arms.end(), arm) == arms.end())  // a preset of before the suite had it
+    arm = table.track.arms.empty() ? arms.back() : table.track.arms.front();
   add_captioned(section, along_demonstrations(table, arm));
-  if (const std::vector<std::string> arms = arms_of(setting); arms.size() > 1)
-    add_captioned(section, by_arm(table, arms, n));
+  if (arms.size() > 1) add_captioned(section, by_arm(table, arms, n));
 }
 
 Grid all_steps_grid(const Suites& suites) {
   Grid grid;
   grid.name = "steps";
   grid.caption = "Success by what one policy is told, in each suite's main arm";
-  grid.heads = {"suite", "scenes", "n", "pixels", "labels", "language", "truth", "language adds", "left to win"};
-  grid.align = "llrrrrrrr";
+  grid.heads = {"suite", "scenes",        "n",           "pixels",    "labels", "language",
+                "truth", "language adds", "left to win", "undisputed"};
+  grid.align = "llrrrrrrrr";
   for (const auto& [suite, tables] : suites) {
     const Titles titles(suite);
     for (const NamedTable& table : tables) {
       if (table.track.kind != Track::abstraction || table.standings.empty()) continue;
-      const auto steps = steps_of(table.standings);
+      const auto steps = steps_of(table.standings, table.track.answers, table.undisputed);
       if (!steps) continue;
       Grid::Row row{{},
-                    {Span::link(titles.suite(), "results/" + suite + ".md"), Span(titles.arm(steps->arm)),
-                     Span::number(std::to_string(steps->demonstrations))}};
+                    {Span::link(titles.suite(), "results/" + suite + ".md"), Span(titles.arm(steps->main.arm)),
+                     Span::number(std::to_string(steps->main.demonstrations))}};
       for (const double success : steps->success) row.cells.emplace_back(Span::number(fixed(success)));
       const report::Step& language = steps->steps[1];
       row.cells.emplace_back(Span::number(
           fmt::format("{} {}", signed_text(language.difference), report::signed_interval(language.interval))));
       row.cells.emplace_back(Span::number(signed_text(steps->steps[2].difference)));
+      row.cells.emplace_back(Span::number(fixed(steps->undisputed[2].value_or(steps->success[2]))));
       grid.rows.push_back(std::move(row));
     }
   }

@@ -135,6 +135,8 @@ void drop_empty_columns(Grid& grid) {
   }
 }
 
+TableCell rate_if_any(const std::optional<double>& rate) { return Span::number(rate ? fixed(*rate) : "–"); }
+
 // The table, with a column for each number of demonstrations, and for each arm where there are several.
 Grid standings_grid(const NamedTable& table, std::size_t first_row) {
   const Setting& setting = table.setting;
@@ -158,6 +160,7 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
   for (const std::string& axis : axes) grid.heads.emplace_back(titles.arm(axis));
   if (arms.size() > 1)
     for (const std::string& arm : arms) grid.heads.emplace_back(titles.arm(arm));
+  if (table.undisputed) grid.heads.emplace_back(titles.arm(table.undisputed->main.arm) + ", undisputed");
   grid.heads.emplace_back("known");
   grid.align = "rlrl" + std::string(grid.heads.size() - 4, 'r');
   const MethodStyles styles(table.names);
@@ -174,19 +177,16 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
       row.cells.emplace_back(at == s.at.end() ? TableCell("") : TableCell(Span::number(fixed(at->second))));
     }
     if (selects)
-      for (const auto& value : {s.in_track, s.gap_closed})
-        row.cells.emplace_back(Span::number(value ? fixed(*value) : "–"));
+      for (const auto& value : {s.in_track, s.gap_closed}) row.cells.push_back(rate_if_any(value));
     if (!axes.empty()) {
       const double control = control_success(*s.entry);
       row.cells.emplace_back(Span::number(fixed(control)));
       row.cells.emplace_back(Span::number(control > 0 ? fixed(s.score / control) : "–"));
     }
-    for (const std::string& axis : axes) {
-      const std::optional<double>& area = s.areas.at(axis);
-      row.cells.emplace_back(Span::number(area ? fixed(*area) : "–"));
-    }
+    for (const std::string& axis : axes) row.cells.push_back(rate_if_any(s.areas.at(axis)));
     if (arms.size() > 1)
       for (const std::string& arm : arms) row.cells.emplace_back(Span::number(fixed(s.in_arm.at(arm))));
+    if (table.undisputed) row.cells.push_back(rate_if_any(success(*table.undisputed, *s.entry)));
     row.cells.emplace_back(
         report::Spans{Span(tier_and_marks(s)), Span(" " + replayed_on(*s.entry), report::Emphasis::detail)});
     row.more = !table.best[i];
@@ -213,7 +213,7 @@ Grid details_grid(const NamedTable& table) {
                    Span::number(score.is_null() ? "–" : fixed(scenes_exact(score)))},
                   reference,
                   !table.best[i]};
-    for (const auto& part : {s.precision, s.recall}) row.cells.emplace_back(Span::number(part ? fixed(*part) : "–"));
+    for (const auto& part : {s.precision, s.recall}) row.cells.push_back(rate_if_any(part));
     for (const double value : {s.lm_queries, s.lm_tokens, s.learn_s})
       row.cells.emplace_back(Span::number(reference ? "–" : amount(value)));
     row.cells.emplace_back(Span(computed_on(*s.entry)));
@@ -308,6 +308,7 @@ std::vector<NamedTable> named_tables(const std::vector<const Entry*>& table, con
     named.setting = setting;
     named.track = track;
     named.ranking = ranking;
+    if (track.kind == Track::abstraction) named.undisputed = undisputed_of(setting);
     named.standings = std::move(standing);
     Names names = names_of(named.standings, labels);
     named.names = std::move(names.names);
@@ -362,6 +363,7 @@ report::Document suite_document(const std::string& suite, const std::vector<Name
             "has, which is little: read it beside the control."}});
     if (!table.standings.empty()) section.add<Grid>(reading, standings_grid(table, first_row));
     if (auto note = below_random_note(table.standings)) section.add<Paragraph>(reading, std::move(*note));
+    if (table.undisputed) section.add<Paragraph>(reading, {{words_of(*table.undisputed)}});
     if (!table.standings.empty())
       section.add<Grid>(reading, details_grid(table), "Answers, costs, dates and sources of these rows");
     if (auto waiting = waiting_grid(table)) section.add<Grid>(reading, std::move(*waiting));
@@ -372,7 +374,7 @@ report::Document suite_document(const std::string& suite, const std::vector<Name
     if (table.ranking != Ranking::papers_network)
       if (auto answers = answers_section(table, id + "-answers")) document.sections.push_back(std::move(*answers));
     if (table.standings.empty()) continue;
-    if (const auto steps = steps_of(table.standings)) {
+    if (const auto steps = steps_of(table.standings, table.track.answers, table.undisputed)) {
       Section added{id + "-steps", "What labels, language and the truth add"};
       added.add<Grid>(reading, steps_grid(*steps, suite, table.setting.name() + "_steps"));
       added.add<Paragraph>(reading,

@@ -7,6 +7,7 @@
 #include <lgabench/leaderboard/labels.hpp>
 #include <lgabench/leaderboard/scenes.hpp>
 #include <lgabench/leaderboard/standings.hpp>
+#include <lgabench/leaderboard/undisputed.hpp>
 #include <lgabench/report/document.hpp>
 
 namespace lgabench::leaderboard {
@@ -23,6 +24,7 @@ struct NamedTable {
   int withdrawn = 0;
   Track track{};
   Ranking ranking = Ranking::any_policy;
+  std::optional<Undisputed> undisputed;  // of the abstraction track
 
   /// "LGA, heat map"
   std::string full_name(std::size_t i) const;
