@@ -124,8 +124,8 @@ class Browser:
             if not box.is_selected():
                 box.click()
 
-    def agree(self):
-        self.click("I agree and begin").see("What the robot can see")
+    def agree(self, then="What the robot can see"):
+        self.click("I agree and begin").see(then)
 
     def step(self, kept_as=None):
         """One page further, whatever it shows. False at the end."""
@@ -136,12 +136,17 @@ class Browser:
         if head == "Thank you":
             return False
         self.driver.execute_script("document.querySelector('h1').dataset.seen = 'yes'")  # the next page has a heading of its own
-        if head in ("What the robot can see", "An example"):
+        if head in ("What the robot can see", "An example", "Which objects does a command mean?"):
             self.click("Continue")
         elif head.startswith(("Practice", "Command")):
             self.click("Start")
         elif head in ("Almost done", "The first part is done"):
             self.click("Send")
+        elif head == "Could the command mean this object?":
+            for answer in self.driver.find_elements(By.CSS_SELECTOR, "input[type=radio][value=yes]"):
+                self.driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", answer)
+                answer.click()
+            self.click("Submit")
         elif head == "Which objects could this command mean?":
             for section in self.driver.find_elements(By.CSS_SELECTOR, "section"):
                 if section.find_elements(By.CSS_SELECTOR, "input:checked") == []:
@@ -212,6 +217,14 @@ class StudySmoke(InBrowser):
         self.assertEqual(self.participants(), ["p01.json"])
         answers = json.loads((self.dir / "data/participants/p01.json").read_text())["answers"]
         self.assertTrue(all("specified" in a and "edited" in a for a in answers))
+
+    def test_disputed_pairs(self):
+        self.start("disputed", seed=1)
+        page = Browser(self).open(self.server.address)
+        page.agree("Which objects does a command mean?")
+        page.take_part("disputed")
+        self.assertEqual(page.complaints(), [])
+        self.check_whole()
 
     def test_chosen_only_shows_what_is_filled_in(self):
         self.start()

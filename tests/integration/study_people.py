@@ -93,6 +93,10 @@ class Person:
         """One command."""
         trial = self.say("start")["trial"]
         self.say("shown")
+        if "pairs" in trial:
+            self.ms += 1000
+            self.state = self.say("submit", answers=["can't tell"] * len(trial["pairs"]), longest_wait_ms=1)
+            return
         selection = {}
         for one in trial["sets"]:
             self.ms += 400
@@ -106,8 +110,9 @@ class Person:
         self.state = self.say("submit", selection=selection, longest_wait_ms=1)
 
     def take_part(self):
-        self.say("familiarised")
-        self.state = self.say("example_seen")
+        self.state = self.say("familiarised")
+        if self.state["step"] == "example":
+            self.state = self.say("example_seen")
         while self.state["step"] != "debriefing":
             if self.state["step"] == "trial":
                 self.answer()

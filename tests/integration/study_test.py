@@ -452,6 +452,38 @@ class StudyRehearsal(StudyCase):
         self.assertEqual(results["trials"]["clicks_disagree"], 0)
         self.assertEqual(results["tlx"]["raw"]["people"], 18)
 
+    def test_disputed_pairs(self):
+        self.new("disputed", pin=False)
+        file = self.dir / "study/protocol.json"
+        protocol = json.loads(file.read_text())
+        protocol["exclusions"]["most_controls_failed"] = 6
+        file.write_text(json.dumps(protocol))
+        self.call("study", "check", "study", "--pin")
+        pairs = [pair for item in protocol["sets"][0] for pair in item["pairs"]]
+        disputed = [pair for pair in pairs if "settled" not in pair]
+        said = self.call("study", "check", "study").stdout
+        self.assertIn(f"{len(disputed)} disputed pairs and {len(pairs) - len(disputed)} controls", said)
+        self.assertRegex(said, r"power: .* needs \d+ people")
+        said = self.call("study", "rehearse", "study", "--out", "data", "--people", "20").stdout
+        self.assertNotIn("--humans", said)
+        report = self.call("study", "report", "data").stdout
+        self.assertIn("rehearsal, not people", report)
+        self.assertRegex(report, r"20 people settle \d+ of %d disputed pairs .*alpha" % len(disputed))
+        found = json.loads((self.dir / "data/results.json").read_text())["agreement"]["pairs"]
+        self.assertEqual(len(found), len(pairs))
+        self.assertEqual({pair["yes"] + pair["no"] + pair["cannot_tell"] for pair in found}, {20})
+        self.assertIn(disputed[0]["object_type"], (self.dir / "data/report.html").read_text())
+
+        server = Server(self, "people")
+        sheet = server.ask("GET", "/study.json")[2]["pictures"]["pairs"]
+        self.assertEqual(set(sheet["names"]) - {"heart, red", "star, red"}, {f"{p['object_type']}, {p['texture']}" for p in pairs})
+        self.assertTrue(server.ask("GET", "/pairs.png")[2].startswith(b"\x89PNG"))
+        person = Person(server).take_part()
+        self.assertEqual(person.state["step"], "debriefing")
+        self.assertEqual(self.participants("people"), [])
+        server.kill()
+        self.assertIn(f"p01 is left out: {len(pairs) - len(disputed)} controls failed, 6 allowed", self.call("study", "report", "people").stdout)
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)

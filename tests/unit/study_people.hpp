@@ -10,6 +10,7 @@ namespace lgabench::study {
 inline fs::path ready_protocol(const fs::path& directory, const std::string& name, Json changes = Json::object()) {
   std::string text = read_file(data_directory() / "protocols" / (name + ".json.in"));
   text.replace(text.find("@SEED@"), 6, "7");
+  if (const std::size_t at = text.find("@PAIRS@"); at != text.npos) text.replace(at, 7, "[]");
   for (std::size_t at = 0; (at = text.find("[[", at)) != text.npos;)
     text.replace(at, text.find("]]", at) + 2 - at, "invented for a test");
   Json json = parse_json(text, name);

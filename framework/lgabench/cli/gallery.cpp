@@ -40,6 +40,34 @@ Tile close_up(const std::string& type, const std::string& texture, const std::st
   return tile;
 }
 
+// An object where a scene of its scenario has the target, alone; what is larger than a tile is drawn smaller.
+Tile alone(const JsonReader& object) {
+  object.only({"scenario", "object_type", "texture"});
+  const Scenario scenario = load_scenario(object.at("scenario").string());
+  Scene scene = test_scene(scenario, layouts_of(scenario).front(), scenario.tests.front().id, 0, 0);
+  SceneObject shown = *scene.find(role::target);
+  shown.object_type = object.at("object_type").string(), shown.texture = object.at("texture").string();
+  scene.objects = {shown};
+  const Observation seen = find_environment(scenario.environment).draw(scene);
+  int left = seen.size.columns, right = 0, top = seen.size.rows, bottom = 0;
+  for (int row = 0; row < seen.size.rows; ++row)
+    for (int column = 0; column < seen.size.columns; ++column)
+      if (seen.ids[pixel(seen, column, row)] == shown.instance_id) {
+        left = std::min(left, column), right = std::max(right, column);
+        top = std::min(top, row), bottom = std::max(bottom, row);
+      }
+  Tile tile{fmt::format("{}, {}", shown.object_type, shown.texture), 72, 72, {}};
+  const int side = std::max({tile.columns, right - left + 9, bottom - top + 9});
+  const auto from = [side](int low, int high, int size, int i, int of) {
+    return std::clamp((low + high - side) / 2 + i * side / of, 0, size - 1);
+  };
+  for (int row = 0; row < tile.rows; ++row)
+    for (int column = 0; column < tile.columns; ++column)
+      tile.pixels.push_back(pixel_colour(seen, pixel(seen, from(left, right, seen.size.columns, column, tile.columns),
+                                                     from(top, bottom, seen.size.rows, row, tile.rows))));
+  return tile;
+}
+
 Tile scene_and_mask(const Scenario& scenario, const std::string& layout, const std::string& arm, int index = 0,
                     int widest = widest_picture) {
   const Scene scene = test_scene(scenario, layout, arm, 0, index);
@@ -143,6 +171,12 @@ Sheet gallery(const std::string& what) {
     return sheet(tiles, 7);
   }
   if (what == "perturbations") return sheet(perturbed(), 4);
+  if (fs::path(what).extension() == ".json") {
+    const Json objects = read_json(what);
+    for (const JsonReader& object : JsonReader(objects, what).elements()) tiles.push_back(alone(object));
+    if (tiles.empty()) throw InputError(what + ": expected an object");
+    return sheet(tiles, 7);
+  }
   const std::vector<std::string> environments = environment_ids();
   const bool words = what == "words";
   const std::string environment = words || what == "scenes" ? "tabletop" : what;
@@ -159,8 +193,8 @@ Sheet gallery(const std::string& what) {
     }
     return sheet(tiles, 2);
   }
-  throw InputError(
-      fmt::format("--gallery {}: expected objects, textures, scenes, words, perturbations or an environment", what));
+  throw InputError(fmt::format(
+      "--gallery {}: expected objects, textures, scenes, words, perturbations, an environment or a file", what));
 }
 
 }  // namespace lgabench::cli

@@ -88,8 +88,11 @@ void add_render(CLI::App& app, int&) {
   auto* scenario = verb->add_option("scenario", arguments->scenario, "A scenario's id");
   verb->add_option("--gallery", arguments->gallery,
                    "Draw one sheet instead: all objects, all textures, or a scene of every scenario (words: of the "
-                   "suite words; perturbations: one along each axis; or of those of one environment)")
-      ->check(one_of("gallery", galleries))
+                   "suite words; perturbations: one along each axis; or of those of one environment); or the objects "
+                   "of a file, a list of {\"scenario\", \"object_type\", \"texture\"}")
+      ->check([known = one_of("gallery", galleries)](std::string what) {
+        return fs::path(what).extension() == ".json" ? std::string() : known(what);
+      })
       ->excludes(scenario);
   verb->add_option("--cells", arguments->cells,
                    "With --gallery: write the position of each picture on the sheet as JSON, and print nothing")
@@ -117,7 +120,7 @@ void add_render(CLI::App& app, int&) {
   add_scenario_path(*verb);
   arrange(*verb, "", {{"scenario", "SCENARIO"}, {"--out", "FILE"}});
   arrange(*verb, "What is drawn",
-          {{"--gallery", "objects|textures|scenes|words|perturbations|ENVIRONMENT"},
+          {{"--gallery", "objects|textures|scenes|words|perturbations|ENVIRONMENT|FILE.json"},
            {"--cells", "FILE"},
            {"--index", "N"},
            {"--layout", "LAYOUT"},

@@ -17,6 +17,7 @@
 #include <lgabench/http/page_server.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/report/writers.hpp>
+#include <lgabench/study/pair_study.hpp>
 #include <lgabench/study/rehearse.hpp>
 #include <lgabench/study/report.hpp>
 #include <lgabench/study/server.hpp>
@@ -42,18 +43,21 @@ int new_study(const StudyArguments& a) {
   const fs::path templates = data_directory() / "protocols";
   const fs::path shipped = templates / (a.protocol + ".json.in");
   if (a.protocol.find('/') != a.protocol.npos || !fs::exists(shipped))
-    throw InputError(fmt::format("--protocol {}: expected paper or crossover", a.protocol));
+    throw InputError(fmt::format("--protocol {}: expected paper, crossover or disputed", a.protocol));
   if (std::error_code error; fs::exists(a.path / "protocol.json", error))
     throw InputError(fmt::format("{}: holds a study already; nothing was written", a.path.string()));
-  const std::string seed = std::to_string(std::random_device()() % 1000000);
-  const std::string protocol = filled(read_file(shipped), {{"@SEED@", seed}});
+  const unsigned seed = std::random_device()() % 1000000;
+  std::vector<std::pair<std::string, std::string>> drawn{{"@SEED@", std::to_string(seed)}};
+  if (a.protocol == "disputed") drawn.emplace_back("@PAIRS@", study::disputed_items(seed).dump(1));
+  const std::string protocol = filled(read_file(shipped), drawn);
   const Json json = parse_json(protocol, shipped.string());
   const std::vector<std::pair<std::string, std::string>> values{{"@DIR@", a.path.string()},
                                                                 {"@PEOPLE@", json.at("planned_people").dump()},
                                                                 {"@MINUTES@", json.at("minutes").dump()}};
   write_file(a.path / "protocol.json", protocol);
   write_file(a.path / "consent.txt", read_file(templates / "consent.txt.in"));
-  write_file(a.path / "README.md", filled(read_file(templates / "README.md.in"), values));
+  write_file(a.path / "README.md",
+             filled(read_file(templates / (a.protocol == "disputed" ? "disputed.md.in" : "README.md.in")), values));
   for (const char* file : {"protocol.json", "consent.txt", "README.md"}) to_stdout("{}\n", (a.path / file).string());
   to_stdout("\nTo see what is left to fill in:\n  lgabench study check {}\n", a.path.string());
   to_stdout("To try it in a browser first:\n  lgabench study serve {} --out {} --rehearsal\n",
@@ -69,9 +73,12 @@ int check(const StudyArguments& a) {
   const study::Protocol protocol = study::read_protocol(file);
   const std::vector<std::string> blanks = study::blanks(protocol);
   for (const std::string& blank : blanks) to_stdout("to fill: {}\n", blank);
-  to_stdout("{}: {} commands a person, {} people planned, {} with spares for {} interruptions\n", protocol.id,
-            protocol.trials(), protocol.planned,
-            protocol.crossover() ? "a crossover" : "each command in both conditions", protocol.spares.size());
+  to_stdout("{}: {} commands a person, {} people planned, ", protocol.id, protocol.trials(), protocol.planned);
+  if (protocol.of_pairs())
+    to_stdout("{}\n", study::power_words(protocol));
+  else
+    to_stdout("{} with spares for {} interruptions\n",
+              protocol.crossover() ? "a crossover" : "each command in both conditions", protocol.spares.size());
   const fs::path pin = study::pin_file(file);
   if (a.pin && blanks.empty() && !fs::exists(pin)) write_file(pin, study::pin_of(protocol).dump(1) + "\n");
   if (!blanks.empty()) throw InputError(fmt::format("{}: {} blanks to fill in", file.string(), blanks.size()));
@@ -98,7 +105,7 @@ int serve(const StudyArguments& a) {
   ::umask(077);
   study::Study study(a.out, std::move(protocol), file, kind);
   for (const std::string& line : study.damaged()) to_stderr("LEFT OUT: {}\n", one_line(line));
-  study::Server server(study, study::load_site(), {a.bind, a.port, a.host, a.invitation, a.begins});
+  study::Server server(study, study::load_site(study.protocol()), {a.bind, a.port, a.host, a.invitation, a.begins});
   to_stdout("{} at http://{}:{}/{} (Ctrl-C stops it; the same command resumes it)\n",
             a.rehearsal ? "a rehearsal" : "the study", a.bind, server.port(),
             a.invitation.empty() ? "" : "?invitation=" + a.invitation);
@@ -118,7 +125,7 @@ int rehearse(const StudyArguments& a) {
   const fs::path file = protocol_file(a.path);
   ::umask(077);
   study::Study study(a.out, study::read_protocol(file), file, study::Kind::rehearsal);
-  study::Server server(study, study::load_site(), {});
+  study::Server server(study, study::load_site(study.protocol()), {});
   std::thread serving([&server] { server.run(); });
   std::exception_ptr failure;
   try {
@@ -130,7 +137,8 @@ int rehearse(const StudyArguments& a) {
   serving.join();
   if (failure) std::rethrow_exception(failure);
   to_stdout("{} simulated people took part. The results:\n  lgabench study report {}\n", a.people, a.out.string());
-  to_stdout("  lgabench run q1 --humans {} --rehearsal\n", (a.out / "participants").string());
+  if (!study.protocol().of_pairs())
+    to_stdout("  lgabench run q1 --humans {} --rehearsal\n", (a.out / "participants").string());
   return ok;
 }
 
@@ -164,8 +172,11 @@ void add_study(CLI::App& app, int& exit) {
   verb->add_option("path", a->path, "The study's directory or its protocol; for report, the directory that serve wrote")
       ->required();
   verb->add_option("--out", a->out, "serve, rehearse: where to store answers; a study already there is continued");
-  verb->add_option("--protocol", a->protocol, "new: the paper's study, or one where nobody sees a command twice")
-      ->check(one_of("protocol", {"paper", "crossover"}))
+  verb->add_option(
+          "--protocol", a->protocol,
+          "new: the paper's study, one where nobody sees a command twice, or one that asks whether commands mean "
+          "the objects of disputed pairs")
+      ->check(one_of("protocol", {"paper", "crossover", "disputed"}))
       ->capture_default_str();
   verb->add_flag("--pin", a->pin,
                  "check: fix the protocol: write the hashes of what must no longer change into a file beside it");
@@ -191,7 +202,7 @@ void add_study(CLI::App& app, int& exit) {
       "--rehearsal", a->rehearsal,
       "serve: try the study out, without a pin; its answers are marked, and no tool takes them for people's");
   arrange(*verb, "", {{"what", "new|check|serve|rehearse|report"}, {"path", "DIR"}, {"--out", "DIR"}});
-  arrange(*verb, "The protocol", {{"--protocol", "paper|crossover"}, {"--pin", ""}});
+  arrange(*verb, "The protocol", {{"--protocol", "paper|crossover|disputed"}, {"--pin", ""}});
   arrange(*verb, "The server",
           {{"--bind", "ADDRESS"},
            {"--port", "N"},

@@ -24,6 +24,11 @@ Assignment assign(const Protocol& protocol, int slot) {
   const auto stream = [&protocol](const std::string& what, int number) {
     return RandomStream(fmt::format("study/{}/{}/{}", protocol.seed, what, number));
   };
+  if (protocol.of_pairs()) {
+    Assignment once;
+    once.order[0] = stream("order", slot).permutation(static_cast<int>(protocol.sets[0].size()));
+    return once;
+  }
   const int cell = stream("block", block).permutation(size)[static_cast<std::size_t>(slot % size)];
   Assignment assignment;
   assignment.conditions = {Condition::human, Condition::lga_hill};

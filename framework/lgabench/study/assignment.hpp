@@ -15,7 +15,8 @@ struct Assignment {
 };
 
 /// One set: blocks of 2 over the order of conditions. Two sets: blocks of 4 over that order × which set comes first;
-/// the rows of a Williams square within each set, all of them once in as many blocks. Both from the seed.
+/// the rows of a Williams square within each set, all of them once in as many blocks. Both from the seed. Of pairs: one
+/// period, every person in an order of their own.
 Assignment assign(const Protocol& protocol, int slot);
 
 /// A Williams square of an even order n (Williams 1949): every row an order of 0..n-1; each number occurs once in each

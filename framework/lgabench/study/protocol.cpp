@@ -27,9 +27,35 @@ Selection proposal_of(const Item& item, RecordedLanguageModel& lm, bool meanings
                                                   : select_features(item.command, item.space, lm);
 }
 
+// The command with those words, and the objects that are asked about.
+Item item_of_pairs(const JsonReader& reader) {
+  Item item;
+  item.scenario = reader.at("scenario").string();
+  item.asked_as = words(reader, "asked_as");
+  const Scenario scenario = load_scenario(item.scenario);
+  item.space = scenario.space;
+  for (const ScenarioCommand& command : scenario.commands)
+    if (command.utterance == item.asked_as) item.truth = command.truth;
+  if (!item.truth) reader.at("asked_as").fail("a command of " + item.scenario);
+  item.command.utterance = item.asked_as;
+  const auto known = [](const JsonReader& name, const std::vector<std::string>& names) {
+    if (std::find(names.begin(), names.end(), name.string()) == names.end()) name.fail("a word of the space");
+    return name.string();
+  };
+  for (const JsonReader& pair : reader.at("pairs").elements()) {
+    pair.only({"object_type", "texture", "settled"});
+    item.pairs.push_back({known(pair.at("object_type"), item.space.object_types),
+                          known(pair.at("texture"), item.space.textures),
+                          pair.has("settled") ? std::optional(pair.at("settled").boolean()) : std::nullopt});
+  }
+  if (item.pairs.empty()) reader.at("pairs").fail("a pair");
+  return item;
+}
+
 // A scenario's one command, with the proposal that LGA-HILL makes in a run.
 Item scenario_item(const JsonReader& reader, bool meanings) {
-  reader.only({"scenario", "asked_as", "hint"});
+  reader.only({"scenario", "asked_as", "hint", "pairs"});
+  if (reader.has("pairs")) return item_of_pairs(reader);
   Item item;
   item.scenario = reader.at("scenario").string();
   const Scenario scenario = load_scenario(item.scenario);
@@ -77,9 +103,10 @@ void expect_distinct(const Protocol& protocol, const JsonReader& reader) {
   std::vector<std::string> seen;
   const auto add = [&](const std::vector<Item>& some) {
     for (const Item& item : some) {
-      if (std::find(seen.begin(), seen.end(), item.scenario) != seen.end())
-        reader.fail(fmt::format("each scenario once in sets and spares; {} is there twice", item.scenario));
-      seen.push_back(item.scenario);
+      const std::string& one = item.pairs.empty() ? item.scenario : item.asked_as;
+      if (std::find(seen.begin(), seen.end(), one) != seen.end())
+        reader.fail(fmt::format("each scenario once in sets and spares; {} is there twice", one));
+      seen.push_back(one);
     }
   };
   for (const auto& set : protocol.sets) add(set);
@@ -97,6 +124,11 @@ void read_design(const JsonReader& reader, Protocol& protocol) {
   if (reader.has("spares")) protocol.spares = items(reader.at("spares"), protocol.meanings);
   expect_distinct(protocol, reader);
   protocol.practice = practice_item(reader.at("practice"), protocol.meanings);
+  for (const auto* all : {&protocol.sets[0], &protocol.sets.back(), &protocol.spares})
+    for (const Item& item : *all)
+      if (item.pairs.empty() == protocol.of_pairs() || (protocol.of_pairs() && all != &protocol.sets[0]))
+        reader.at("sets").fail("pairs in practice and every command of one set, without spares, or nowhere");
+  if (protocol.of_pairs()) return;
   const JsonReader example = reader.at("example");
   example.only({"command", "feature_space", "answer"});
   protocol.example_command = words(example, "command");
@@ -107,7 +139,9 @@ void read_design(const JsonReader& reader, Protocol& protocol) {
 
 void read_rules(const JsonReader& reader, Protocol& protocol) {
   const JsonReader exclusions = reader.at("exclusions");
-  exclusions.only({"fewest_trials", "longest_seconds"});
+  exclusions.only({"fewest_trials", "longest_seconds", "most_controls_failed"});
+  if (exclusions.has("most_controls_failed"))
+    protocol.most_controls_failed = static_cast<int>(exclusions.at("most_controls_failed").integer(0, 1000));
   protocol.fewest_trials = static_cast<int>(exclusions.at("fewest_trials").integer(1, 1000));
   if (exclusions.has("longest_seconds")) protocol.longest_s = exclusions.at("longest_seconds").number();
   const JsonReader asked = reader.at("questionnaire");
@@ -125,13 +159,16 @@ void read_rules(const JsonReader& reader, Protocol& protocol) {
 // All that people are shown, and what their answers are judged by.
 Json stimuli(const Protocol& protocol) {
   const auto shown = [](const Item& item) {
-    return Json{{"asked_as", item.asked_as},
-                {"hint", item.hint},
-                {"types", item.space.object_types},
-                {"textures", item.space.textures},
-                {"proposal", distribution_json(item.proposal)},
-                {"proposed_by", item.proposed_by},
-                {"truth", item.truth ? distribution_json(*item.truth) : Json()}};
+    Json json{{"asked_as", item.asked_as},
+              {"hint", item.hint},
+              {"types", item.space.object_types},
+              {"textures", item.space.textures},
+              {"proposal", distribution_json(item.proposal)},
+              {"proposed_by", item.proposed_by},
+              {"truth", item.truth ? distribution_json(*item.truth) : Json()}};
+    for (const AskedPair& pair : item.pairs)
+      json["pairs"].push_back({pair.object_type, pair.texture});  // else as 0.2.0
+    return json;
   };
   Json all{{"practice", shown(protocol.practice)}, {"sets", Json::array()}, {"spares", Json::array()}};
   for (const auto& set : protocol.sets) {

@@ -19,6 +19,12 @@ std::string to_string(Condition condition);
 /// @throws InputError for another word, with its place.
 Condition read_condition(const JsonReader& reader);
 
+/// An object of which people say whether the command could mean it.
+struct AskedPair {
+  std::string object_type, texture;
+  std::optional<bool> settled;  // what the truth says of a control; none of a disputed pair
+};
+
 /// What a person is asked, and what is proposed to them in the condition lga_hill.
 struct Item {
   std::string scenario;  // "" for a practice command that no scenario has
@@ -28,6 +34,7 @@ struct Item {
   Selection proposal;
   std::string proposed_by;
   std::optional<Selection> truth;  // the released one; none for practice
+  std::vector<AskedPair> pairs;    // of a study of disputed pairs, which asks for these in place of lists
 };
 
 /// When NASA-TLX is asked: by_condition, after each of the two parts, about that part.
@@ -52,6 +59,7 @@ struct Protocol {
   FeatureSpace example_space;
   int fewest_trials = 1;            // in each condition; who finished fewer is left out of every test
   std::optional<double> longest_s;  // a trial that took longer is left out
+  int most_controls_failed = 1000;  // who failed more is left out
   Tlx tlx = Tlx::never;
   bool free_text = false;  // asked at the end
 
@@ -61,8 +69,12 @@ struct Protocol {
   std::string pin;     // see pin_of()
 
   bool crossover() const { return sets.size() == 2; }
+  /// People judge pairs, each command once, without conditions.
+  bool of_pairs() const { return !practice.pairs.empty(); }
   /// Trials that are planned for a person, in both conditions together, without practice.
-  std::size_t trials() const { return crossover() ? sets[0].size() + sets[1].size() : 2 * sets[0].size(); }
+  std::size_t trials() const {
+    return crossover() ? sets[0].size() + sets[1].size() : sets[0].size() * (of_pairs() ? 1 : 2);
+  }
 };
 
 /// Reads protocol and consent file. @throws InputError with file and place.

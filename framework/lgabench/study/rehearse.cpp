@@ -91,6 +91,25 @@ class Person {
     return protocol_.practice;
   }
 
+  // Of what is disputed each pair has its share of yes; of what is settled hardly anybody misses the truth.
+  Json judge(const Json& trial) {
+    const Item& asked = item(trial.at("command"));
+    Json answers = Json::array();
+    for (const Json& shown : trial.at("pairs")) {
+      const AskedPair& pair = *std::find_if(asked.pairs.begin(), asked.pairs.end(), [&shown](const AskedPair& one) {
+        return one.object_type == shown.at("object_type") && one.texture == shown.at("texture");
+      });
+      RandomStream own(
+          fmt::format("study rehearsal/{}/{}/{}/{}", protocol_.seed, asked.asked_as, pair.object_type, pair.texture));
+      const double yes = pair.settled ? (*pair.settled ? .98 : .02) : own.uniform();
+      answers.push_back(random_.uniform() < .04 && !pair.settled ? "can't tell"
+                        : random_.uniform() < yes                ? "yes"
+                                                                 : "no");
+    }
+    ms_ += 1000 * random_.uniform(10, 60);
+    return say("submit", {{"answers", answers}, {"longest_wait_ms", 5}});
+  }
+
   Json answer(const Json& trial) {
     const Item& asked = item(trial.at("command"));
     const Selection right = asked.truth.value_or(asked.proposal);
@@ -98,6 +117,7 @@ class Person {
     const double seconds = std::exp(std::log(edits ? edit_s : human_s) + slowness_ + spread * random_.gaussian());
     const double from = ms_;
     say("shown");
+    if (trial.contains("pairs")) return judge(trial);
     Json selection;
     for (const Json& set : trial.at("sets")) {
       const std::string role = set.at("role");

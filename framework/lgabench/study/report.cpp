@@ -12,6 +12,7 @@
 #include <lgabench/report/report.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/report/writers.hpp>
+#include <lgabench/study/pair_report.hpp>
 
 namespace lgabench::study {
 namespace {
@@ -296,6 +297,7 @@ Section questionnaire_section(const StudyResults& results) {
 // The primary test in a sentence; of a rehearsal it says first that it is none.
 std::string headline(const StudyResults& results) {
   const std::string begin = results.record->kind == Kind::rehearsal ? "Rehearsal, not people, so no result: " : "";
+  if (results.record->protocol->of_pairs()) return begin + agreement_words(results) + ".";
   if (!results.primary) return begin + "fewer than two people can be compared.";
   return fmt::format(
       "{}{} people took {} s a command from empty lists ({}), {} s with a model's answer filled in ({}): {}, {}.",
@@ -351,6 +353,10 @@ Document document_of(const StudyResults& results) {
     note(
         "People were shown other scenarios or answers than this version of lgabench has; φ̂ is judged by this "
         "version's.");
+  if (record.protocol->of_pairs()) {
+    document.sections = {pairs_section(results), left_out_section(results), questionnaire_section(results)};
+    return document;
+  }
   note("The paper does not say whether its ± is a standard deviation or a standard error; here both are printed.");
   if (!record.protocol->crossover())
     note(
@@ -389,6 +395,7 @@ Json to_json(const StudyResults& results) {
     json["commands"].push_back({{"scenario", command.item->scenario},
                                 {"change", change_json(command.change)},
                                 {"p_holm", command.change ? Json(command.p_holm) : Json()}});
+  if (!results.pairs.empty()) json["agreement"] = pairs_json(results);
   if (!results.log_model.empty())
     json["crossover"] = {{"condition", change_json(results.log_model[0])},
                          {"period", change_json(results.log_model[1])},
@@ -400,9 +407,13 @@ std::string trials_csv(const StudyResults& results) {
   constexpr const char* states[] = {"waiting", "started", "shown", "finished", "interrupted"};
   std::string text =
       csv_line({"participant", "excluded", "condition", "period", "set", "practice", "scenario", "asked_as", "state",
-                "counts", "raw_seconds", "active_seconds", "server_seconds", "edits", "quality"});
+                "counts", "raw_seconds", "active_seconds", "server_seconds", "edits", "quality", "answers"});
   for (const PersonResult& person : results.people)
     for (const Trial& trial : person.session->all()) {
+      constexpr const char* said[] = {"yes", "no", "can't tell"};
+      Json answers;  // by pair
+      for (std::size_t i = 0; i < trial.answers.size(); ++i)
+        answers[trial.item->pairs[i].object_type + ", " + trial.item->pairs[i].texture] = said[trial.answers[i]];
       Selection selection = trial.selection;
       selection.provenance = Provenance::human;
       const bool done = trial.state == Trial::finished;
@@ -415,7 +426,10 @@ std::string trials_csv(const StudyResults& results) {
                         trial.why.empty() ? states[trial.state] : fmt::format("interrupted: {}", trial.why),
                         counts(*results.record->protocol, trial) ? "1" : "0", number(trial.raw_s),
                         number(trial.active_s), number(trial.server_s), std::to_string(trial.edits),
-                        done && trial.item->truth ? canonical(to_json(quality(selection, *trial.item->truth))) : ""});
+                        done && trial.item->truth && answers.is_null()
+                            ? canonical(to_json(quality(selection, *trial.item->truth)))
+                            : "",
+                        answers.is_null() ? "" : canonical(answers)});
     }
   return text;
 }

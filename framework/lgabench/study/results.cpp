@@ -92,6 +92,26 @@ std::vector<ScaleResult> tlx_of(const StudyResults& results) {
   return all;
 }
 
+void count_pairs(StudyResults& results) {
+  std::vector<double> p;
+  std::vector<std::vector<int>> units;
+  for (const Item& item : results.record->protocol->sets[0])
+    for (std::size_t i = 0; i < item.pairs.size(); ++i) {
+      PairResult pair{&item, &item.pairs[i]};
+      for (const PersonResult& person : results.people)
+        for (const Trial* trial : person.counted[index(Condition::human)])
+          if (trial->item == &item && person.excluded.empty()) ++pair.said[static_cast<std::size_t>(trial->answers[i])];
+      if (!pair.pair->settled && pair.people() > 0) p.push_back(p_unsettled(pair.said));
+      if (!pair.pair->settled) units.emplace_back(pair.said.begin(), pair.said.end());
+      results.pairs.push_back(pair);
+    }
+  const std::vector<double> adjusted = report::holm(p);
+  std::size_t next = 0;
+  for (PairResult& pair : results.pairs)
+    if (!pair.pair->settled && pair.people() > 0) pair.p_holm = adjusted[next++];
+  results.agreement = krippendorff_alpha(units);
+}
+
 // Mean log seconds of a period's trials that count.
 double mean_log(const PersonResult& person, int period) {
   double sum = 0;
@@ -180,6 +200,10 @@ StudyResults results_of(const Record& record) {
     person.excluded = why_left_out(*record.protocol, session);
     count_trials(results, person);
     results.people.push_back(std::move(person));
+  }
+  if (record.protocol->of_pairs()) {
+    count_pairs(results);
+    return results;
   }
   compare(results);
   results.commands = commands_of(results);

@@ -7,6 +7,7 @@
 
 #include <lgabench/abstraction/quality.hpp>
 #include <lgabench/report/statistics.hpp>
+#include <lgabench/study/pair_study.hpp>
 #include <lgabench/study/study.hpp>
 
 namespace lgabench::study {
@@ -37,6 +38,17 @@ struct ScaleResult {
   double p_holm = 1;                          // over the rows
 };
 
+/// A pair of a study of disputed pairs: what people said of it.
+struct PairResult {
+  const Item* item = nullptr;
+  const AskedPair* pair = nullptr;
+  Said said{};
+  double p_holm = 1;  // p_unsettled() over the disputed pairs; 1 of a control
+
+  int people() const { return said[0] + said[1] + said[2]; }
+  bool settled() const { return p_holm <= report::alpha; }  // as more than half say
+};
+
 struct StudyResults {
   const Record* record = nullptr;
   std::vector<PersonResult> people;                                // all, by slot
@@ -52,6 +64,9 @@ struct StudyResults {
   int interrupted = 0, too_long = 0, practice = 0, disagree = 0;  // trials; disagree: clicks that do not add up to φ̂
   int clocks_apart =
       0;  // trials in which the server's clock says another time by more than 2 s; not of simulated people
+
+  std::vector<PairResult> pairs;    // of a study of disputed pairs, which has no more than people, trials and these
+  std::optional<double> agreement;  // Krippendorff's alpha over the disputed ones
 
   int used() const;  // people
 };

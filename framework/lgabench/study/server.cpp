@@ -91,6 +91,7 @@ struct Server::Impl {
     serve("/study.js", site.script, "text/javascript; charset=utf-8");
     serve("/object_types.png", site.object_types.png, "image/png");
     serve("/textures.png", site.textures.png, "image/png");
+    serve("/pairs.png", site.pairs.png, "image/png");
     server.pages.Get("/favicon.ico", [](const Request&, Response& response) { response.status = 204; });
     server.pages.Get("/study.json", [this](const Request&, Response& response) {
       const Protocol& p = study.protocol();
@@ -101,7 +102,10 @@ struct Server::Impl {
              {"instruction", p.instruction},
              {"consent_sha256", sha256(p.consent)},
              {"rehearsal", study.kind() == Kind::rehearsal},
-             {"pictures", {{"object_types", site.object_types.cells}, {"textures", site.textures.cells}}}});
+             {"pictures",
+              {{"object_types", site.object_types.cells},
+               {"textures", site.textures.cells},
+               {"pairs", site.pairs.cells}}}});
     });
   }
 

@@ -16,10 +16,11 @@ struct PictureSheet {
 /// What the pages are made of, in memory.
 struct Site {
   std::string page, style, script;
-  PictureSheet object_types, textures;
+  PictureSheet object_types, textures,
+      pairs;  // pairs: those that the protocol asks about, "TYPE, TEXTURE"; may be none
 };
 /// From the data directory's study/, and pictures drawn by lgabench-worker. @throws InputError where either is missing.
-Site load_site();
+Site load_site(const Protocol& protocol);
 
 struct Listening {
   std::string address = "127.0.0.1";

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include <lgabench/core/random.hpp>
 #include <lgabench/study/withdrawal.hpp>
 
 namespace lgabench::study {
@@ -14,6 +15,7 @@ namespace {
 constexpr double never = std::numeric_limits<double>::infinity();
 constexpr std::size_t longest_text = 4000;
 constexpr double clocks_apart_s = 60;  // more than the server's seconds no trial took
+const std::vector<std::string> pair_answers{"yes", "no", "can't tell"};
 const std::vector<std::string> scales{"mental", "physical", "temporal", "performance", "effort", "frustration"};
 
 Json names_of(const FeatureSet& set) { return {{"object_types", set.object_types}, {"textures", set.textures}}; }
@@ -78,8 +80,9 @@ void Session::begin(const Json& event) {
   simulated_ = event.value("simulated", false);
   assignment_ = assign(*protocol_, slot_);
   for (const int period : {0, 1})
-    trials_.push_back(
-        {&protocol_->practice, assignment_.conditions[static_cast<std::size_t>(period)], period, -1, true});
+    if (period == 0 || !protocol_->of_pairs())
+      trials_.push_back(
+          {&protocol_->practice, assignment_.conditions[static_cast<std::size_t>(period)], period, -1, true});
   for (const int period : {0, 1}) {
     const auto p = static_cast<std::size_t>(period);
     const auto& set = protocol_->sets[static_cast<std::size_t>(assignment_.sets[p])];
@@ -90,7 +93,7 @@ void Session::begin(const Json& event) {
 
 Session::Step Session::step() const {
   if (!familiar_) return familiarisation;
-  if (!example_seen_) return example;
+  if (!example_seen_ && !protocol_->of_pairs()) return example;
   if (next_ < trials_.size()) return between_parts() ? questionnaire : trials;
   return answers_.is_null() && (protocol_->tlx != Tlx::never || protocol_->free_text) ? questionnaire : debriefing;
 }
@@ -143,8 +146,9 @@ void Session::check(const JsonReader& event, std::int64_t now_ms) const {
     if (event.at("since_ms").number() > at) event.at("since_ms").fail("a time before it");
     return;
   }
+  const bool of_pairs = in_trial && !now().item->pairs.empty();
   if (kind == "edit") {
-    only({"role", "feature", "values", "on"}, in_trial);
+    only({"role", "feature", "values", "on"}, in_trial && !of_pairs);
     return check_edit(event);
   }
   if (kind == "meant") {
@@ -153,12 +157,17 @@ void Session::check(const JsonReader& event, std::int64_t now_ms) const {
     return;
   }
   if (kind == "submit") {
-    only({"selection", "longest_wait_ms"}, in_trial);
+    only({of_pairs ? "answers" : "selection", "longest_wait_ms"}, in_trial);
     if (at <= shown_ms_) event.at("page_ms").fail("a time after the command was shown");
     if (!simulated_ && at - shown_ms_ > static_cast<double>(now_ms - shown_at_) + 1000 * clocks_apart_s)
       event.at("page_ms").fail("a time that has passed here too");
     event.at("longest_wait_ms").number();
-    submitted(event);
+    if (!of_pairs) return void(submitted(event));
+    if (event.at("answers").elements().size() != now().item->pairs.size())
+      event.at("answers").fail("one for each pair");
+    for (const JsonReader& one : event.at("answers").elements())
+      if (std::find(pair_answers.begin(), pair_answers.end(), one.string()) == pair_answers.end())
+        one.fail("yes, no or can't tell");
     return;
   }
   if (kind != "questionnaire") event.at("kind").fail("a kind of event");
@@ -253,17 +262,26 @@ void Session::mean(const Json& event) {
 
 void Session::submit(const Json& event) {
   Trial& trial = now();
-  trial.selection = submitted(JsonReader(event, log_.file().string()));
-  const Json edited = distribution_json(edited_);  // the same names, in the order of the clicks
-  trial.edits_agree =
-      distribution_json(read_distribution(JsonReader(edited, "edits"), trial.item->space,
-                                          trial.item->command.second)) == distribution_json(trial.selection);
+  const bool of_pairs = !trial.item->pairs.empty();
+  if (of_pairs) {
+    const std::vector<int> order = order_of_pairs();
+    trial.answers.resize(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+      trial.answers[static_cast<std::size_t>(order[i])] = static_cast<int>(
+          std::find(pair_answers.begin(), pair_answers.end(), event.at("answers").at(i)) - pair_answers.begin());
+  } else {
+    trial.selection = submitted(JsonReader(event, log_.file().string()));
+    const Json edited = distribution_json(edited_);  // the same names, in the order of the clicks
+    trial.edits_agree =
+        distribution_json(read_distribution(JsonReader(edited, "edits"), trial.item->space,
+                                            trial.item->command.second)) == distribution_json(trial.selection);
+  }
   trial.raw_s = (page_ms(event) - shown_ms_) / 1000;
   Intervals away = unfocused_;
   away.insert(away.end(), idle_.begin(), idle_.end());
   trial.active_s = without(shown_ms_, page_ms(event), std::move(away)) / 1000;
   trial.server_s = static_cast<double>(event.at("at").get<std::int64_t>() - shown_at_) / 1000;
-  if (event.at("longest_wait_ms").get<double>() > 1000 * longest_wait_s && !trial.practice)
+  if (event.at("longest_wait_ms").get<double>() > 1000 * longest_wait_s && !trial.practice && !of_pairs)
     return interrupt("the connection was lost");
   trial.state = Trial::finished;
   ++next_;
@@ -275,7 +293,7 @@ void Session::interrupt(const std::string& why) {
   trial.why = why;
   Trial instead{trial.item, trial.condition, trial.period, trial.set, trial.practice};
   ++next_;
-  if (instead.practice) {  // again, at once
+  if (instead.practice || protocol_->of_pairs()) {  // again, at once
     trials_.insert(trials_.begin() + static_cast<std::ptrdiff_t>(next_), instead);
   } else if (spares_used_ < protocol_->spares.size()) {  // another command, last of its period
     instead.item = &protocol_->spares[spares_used_++];
@@ -284,6 +302,12 @@ void Session::interrupt(const std::string& why) {
     while (place != trials_.end() && place->period == instead.period) ++place;
     trials_.insert(place, instead);
   }
+}
+
+std::vector<int> Session::order_of_pairs() const {
+  const Item& item = *now().item;
+  return RandomStream(fmt::format("study/{}/pairs/{}/{}", protocol_->seed, slot_, item.asked_as))
+      .permutation(static_cast<int>(item.pairs.size()));
 }
 
 Json Session::trial_state() const {
@@ -301,12 +325,18 @@ Json Session::trial_state() const {
             {"first_of_part", !trial.practice && (done == 0 || trials_[next_ - 1].period != trial.period)},
             {"interrupted", interrupted},
             {"proposed_by_model", !trial.item->scenario.empty()},  // else by the protocol's author
+            {"of_pairs", protocol_->of_pairs()},
             {"running", running()}};
   if (!running()) return json;  // nobody reads ahead
   const Item& item = *trial.item;
   const Selection first = first_selection(item, trial.condition);
   json["command"] = item.asked_as;
   json["hint"] = item.hint;
+  for (const int i : item.pairs.empty() ? std::vector<int>() : order_of_pairs()) {
+    const AskedPair& pair = item.pairs[static_cast<std::size_t>(i)];
+    json["pairs"].push_back({{"object_type", pair.object_type}, {"texture", pair.texture}});
+  }
+  if (!item.pairs.empty()) return json;
   json["object_types"] = item.space.object_types;
   json["textures"] = item.space.textures;
   json["meanings"] = protocol_->meanings;
@@ -323,7 +353,8 @@ Json Session::trial_state() const {
 Json Session::state() const {
   constexpr const char* steps[] = {"familiarisation", "example", "trial", "questionnaire", "debriefing"};
   Json json{{"step", steps[step()]}, {"withdrawal_code", withdrawal_code(log_.file().stem().string())}};
-  if (step() == familiarisation || step() == example) {
+  json["of_pairs"] = protocol_->of_pairs();
+  if (!protocol_->of_pairs() && (step() == familiarisation || step() == example)) {
     json["object_types"] = protocol_->example_space.object_types;
     json["textures"] = protocol_->example_space.textures;
   }

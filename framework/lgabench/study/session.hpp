@@ -34,6 +34,7 @@ struct Trial {
   State state = waiting;
   std::string why{};  // interrupted
   Selection selection{};
+  std::vector<int> answers{};  // of its item's pairs: 0 yes, 1 no, 2 can't tell
   int edits = 0;
   bool edits_agree = true;  // the proposal, edited as was logged, is what was submitted
   double raw_s = 0;         // by the page's clock, from the second frame after the command was painted to submit
@@ -89,6 +90,7 @@ class Session {
   Trial& now() { return trials_[next_]; }
   const Trial& now() const { return trials_[next_]; }
   Json trial_state() const;
+  std::vector<int> order_of_pairs() const;  // in which this person sees those of the trial
 
   const Protocol* protocol_;
   EventLog log_;

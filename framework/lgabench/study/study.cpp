@@ -166,8 +166,8 @@ std::string Study::begin(const std::string& key, const std::string& consent_sha2
   auto session = std::make_unique<Session>(protocol_, std::move(log));
   ++slots_;
   const Json entry = assigned(*session);
-  const std::string began = fmt::format("{} began, with {} first", pseudonym(session->slot()),
-                                        to_string(session->assignment().conditions[0]));
+  std::string began = pseudonym(session->slot()) + " began";
+  if (!protocol_.of_pairs()) began += fmt::format(", with {} first", to_string(session->assignment().conditions[0]));
   people_[id] = std::move(session);
   log_->append(entry);
   say(began);
@@ -254,20 +254,31 @@ bool counts(const Protocol& protocol, const Trial& trial) {
          (!protocol.longest_s || trial.raw_s <= *protocol.longest_s);
 }
 
+int controls_failed(const Protocol& protocol, const Session& session) {
+  int failed = 0;
+  for (const Trial& trial : session.all())
+    for (std::size_t i = 0; i < trial.answers.size() && counts(protocol, trial); ++i)
+      if (const std::optional<bool> settled = trial.item->pairs[i].settled)
+        failed += trial.answers[i] != (*settled ? 0 : 1);
+  return failed;
+}
+
 std::string why_left_out(const Protocol& protocol, const Session& session) {
   if (!session.answered()) return "did not finish";
+  if (const int failed = controls_failed(protocol, session); failed > protocol.most_controls_failed)
+    return fmt::format("{} controls failed, {} allowed", failed, protocol.most_controls_failed);
   for (const Condition condition : {Condition::human, Condition::lga_hill}) {
     const auto n = std::count_if(session.all().begin(), session.all().end(), [&](const Trial& trial) {
       return trial.condition == condition && counts(protocol, trial);
     });
-    if (n < protocol.fewest_trials)
+    if (n < protocol.fewest_trials && (condition == Condition::human || !protocol.of_pairs()))
       return fmt::format("{} trials of {} count, {} needed", n, to_string(condition), protocol.fewest_trials);
   }
   return "";
 }
 
 Json participant_json(const Protocol& protocol, Kind kind, const Session& session) {
-  if (!why_left_out(protocol, session).empty()) return nullptr;
+  if (protocol.of_pairs() || !why_left_out(protocol, session).empty()) return nullptr;
   std::map<std::string, Json> answers;  // by scenario
   for (const Trial& trial : session.all()) {
     if (!counts(protocol, trial)) continue;

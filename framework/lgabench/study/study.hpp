@@ -81,9 +81,12 @@ Record read_study(const fs::path& directory);
 
 /// "p07", of a slot.
 std::string pseudonym(int slot);
+/// Control pairs that the person answered otherwise than the truth does.
+int controls_failed(const Protocol& protocol, const Session& session);
 /// Why the protocol leaves the person out of every test; "" for one whom it does not.
 std::string why_left_out(const Protocol& protocol, const Session& session);
-/// What `lgabench run --humans` reads of a person (docs/formats: a participant's file); null of one who is left out.
+/// What `lgabench run --humans` reads of a person (docs/formats: a participant's file); null of one who is left out,
+/// and where pairs were asked about: those answers are no Selection.
 Json participant_json(const Protocol& protocol, Kind kind, const Session& session);
 /// Whether the trial counts: finished, not practice, not longer than the protocol allows.
 bool counts(const Protocol& protocol, const Trial& trial);

@@ -148,7 +148,7 @@ const gone = () => stop('There is no such session', 'It was withdrawn, or the ad
 const featureNames = {object_types: 'Object types', textures: 'Colors'};
 
 function picture(feature, name) {
-  const {names, tile, step, across} = about.pictures[feature], at = names.indexOf(name), scale = 72 / tile;
+  const {names, tile, step, across} = about.pictures[feature], at = names.indexOf(name), scale = (feature === 'pairs' ? 144 : 72) / tile;
   const element = make('span', {class: 'picture ' + feature, 'aria-hidden': 'true'});
   const width = (across * step - (step - tile)) * scale;
   element.style.backgroundSize = `${width}px auto`;
@@ -171,13 +171,19 @@ function once(text, kind) {
 }
 
 function familiarisation(state) {
+  const code = make('p', {class: 'note'}, 'You may stop at any time by closing this page. With your withdrawal code, ',
+                    make('code', {}, state.withdrawal_code), ', you can have deleted what is stored. You will see it again at the end.');
+  if (state.of_pairs)
+    return show('Which objects does a command mean?', words(...paragraphs(
+      'A robot is given commands, such as “pick up the red bowl”. For each command you see some objects, each with its name and color. Say of each whether the command could mean it.',
+      'Judge each object by itself. There are no right answers where people differ. First comes one command for practice.', ...instruction()), code),
+                once('Continue', 'familiarised'));
   show('What the robot can see',
        words(...paragraphs(
          'You are helping to teach a robot which properties of objects matter for a task. The robot is given a command, such as “pick up the red bowl”.',
          'For each command you say which objects it could mean: which object types, and which colors. Any type can have any color; an object has exactly one type and one color.',
          'Here is everything there is. Take your time to look at it; the lists will be at hand later.'),
-         make('p', {class: 'note'}, 'You may stop at any time by closing this page. With your withdrawal code, ',
-              make('code', {}, state.withdrawal_code), ', you can have deleted what is stored. You will see it again at the end.')),
+         code),
        gallery('object_types', state.object_types), gallery('textures', state.textures), once('Continue', 'familiarised'));
 }
 
@@ -195,17 +201,17 @@ function example(state) {
 const instruction = () => about.instruction ? [about.instruction] : [];
 let trial = null;  // while a command is shown: {lastInput, idle, away}
 
-function ready({condition, practice, number, of, first_of_part, interrupted, proposed_by_model}) {
+function ready({condition, practice, number, of, first_of_part, interrupted, proposed_by_model, of_pairs}) {
   const filled = condition === 'lga_hill';
-  const texts = filled
+  const texts = of_pairs ? ['Could the command mean the object? Say so of each.', ...instruction()] : filled
     ? [proposed_by_model ? 'A large language model’s answer is filled in. Change it as you like, or submit it as it is.'
       : 'For practice, an answer that we made up is filled in. Change it as you like, or submit it as it is. In the study, a large language model’s answers will be filled in.']
     : ['The lists are empty at first: choose all object types and all colors that the command could mean.'];
-  if (!practice) texts.push(...instruction(), 'Time runs from when the command appears until you submit. Please stay on this page until then.');
-  const notes = interrupted ? [make('p', {class: 'note'}, practice
+  if (!practice && !of_pairs) texts.push(...instruction(), 'Time runs from when the command appears until you submit. Please stay on this page until then.');
+  const notes = interrupted ? [make('p', {class: 'note'}, practice || of_pairs
     ? 'The last command was interrupted, so it is shown again.' : 'The last command was interrupted. It does not count; the study continues with the next one.')] : [];
-  if (first_of_part) notes.push(make('p', {class: 'note'}, filled ? 'In this part the answers are filled in.' : 'In this part the lists begin empty.'));
-  show(practice ? `Practice ${number} of 2` : `Command ${number} of ${of}`, words(...notes, ...paragraphs(...texts), once('Start', 'start')));
+  if (first_of_part && !of_pairs) notes.push(make('p', {class: 'note'}, filled ? 'In this part the answers are filled in.' : 'In this part the lists begin empty.'));
+  show(practice ? of_pairs ? 'Practice' : `Practice ${number} of 2` : `Command ${number} of ${of}`, words(...notes, ...paragraphs(...texts), once('Start', 'start')));
 }
 
 // `edited(values, on)` says what was chosen, or unchosen.
@@ -341,26 +347,41 @@ function meaning(state, {role, first}, changed) {
             make('label', {for: 'which'}, 'If several of these are on the table, the robot should take '), choice), reference)};
 }
 
+// One question for each object: {element, complete(), answers()}.
+function questions(pairs, changed) {
+  const said = pairs.map(() => null);
+  const one = ({object_type, texture}, i) => make('fieldset', {}, make('legend', {}, `${object_type}, ${texture}`),
+    picture('pairs', `${object_type}, ${texture}`), make('div', {class: 'answers'}, ...['yes', 'no', 'can\'t tell'].map(answer =>
+      make('label', {}, make('input', {type: 'radio', name: `pair${i}`, value: answer, onchange: () => (said[i] = answer, changed())}), answer))));
+  return {element: make('div', {class: 'pairs'}, ...pairs.map(one)), left: () => said.filter(answer => !answer).length, answers: () => said};
+}
+
 function running(state) {
+  const asked = state.pairs && questions(state.pairs, () => changed());
   const submit = button('Submit', () => {
     const selection = Object.fromEntries(sets.map(set => [set.role, set.value()]));
     submit.disabled = true;
     submit.textContent = 'Saving…';
-    post('submit', {selection, longest_wait_ms: longestWait()});
+    post('submit', {...(asked ? {answers: asked.answers()} : {selection}), longest_wait_ms: longestWait()});
     trial = null;
   });
   const bar = make('p', {class: 'soft', role: 'status'}), sets = [];
   const changed = () => {
+    if (asked) {
+      submit.disabled = asked.left() > 0;
+      bar.textContent = asked.left() ? `${several(asked.left(), 'object')} left` : '';
+      return;
+    }
     if (sets.length < state.sets.length) return;  // the page is being made
     const whole = sets.every(set => set.complete());
     submit.disabled = !whole;
     bar.textContent = whole ? `Chosen: ${sets.map(set => set.counted()).join('; ')}`
       : 'Choose at least one object type and one color' + (sets.length > 1 || state.meanings ? ' in each part.' : '.');
   };
-  for (const set of state.sets) sets.push((state.meanings && set.role === 'target' ? meaning : product)(state, set, changed));
+  for (const set of asked ? [] : state.sets) sets.push((state.meanings && set.role === 'target' ? meaning : product)(state, set, changed));
   changed();
-  show('Which objects could this command mean?', make('p', {class: 'command'}, `“${state.command}”`),
-       ...(state.hint ? [make('p', {class: 'soft'}, `(${state.hint})`)] : []), ...sets.map(set => set.element), make('div', {class: 'bar'}, submit, bar));
+  show(asked ? 'Could the command mean this object?' : 'Which objects could this command mean?', make('p', {class: 'command'}, `“${state.command}”`),
+       ...(state.hint ? [make('p', {class: 'soft'}, `(${state.hint})`)] : []), ...(asked ? [asked.element] : sets.map(set => set.element)), make('div', {class: 'bar'}, submit, bar));
   longest = 0;
   requestAnimationFrame(() => requestAnimationFrame(() => {  // the command is painted
     trial = {lastInput: performance.now(), idle: false, away: false};
@@ -439,7 +460,7 @@ function questionnaire(state) {
 function debriefing(state) {
   show('Thank you', words(
     ...paragraphs('You have finished. Your answers are stored.',
-                  'The study compares how long people need to say what a command means, from nothing and with a language model’s answer to correct, and how good the result is for a robot that learns from it.'),
+                  state.of_pairs ? 'The study asks which objects people take a command to mean where its words leave that open.' : 'The study compares how long people need to say what a command means, from nothing and with a language model’s answer to correct, and how good the result is for a robot that learns from it.'),
     make('p', {}, 'Your withdrawal code: ', make('code', {}, state.withdrawal_code)),
     ...paragraphs('Please write it down. Whoever has it can have your answers deleted, at the address of this study with /withdraw at its end.',
                   `If you have a question: ${about.contact}`, 'You can close this page.')));
@@ -459,7 +480,7 @@ async function begin() {
   document.getElementById('rehearsal').hidden = !about.rehearsal;
   if (location.pathname === '/withdraw') return withdraw();
   if (!id) return location.pathname === '/' ? consent() : gone();
-  for (const feature of ['object_types', 'textures']) {  // no picture comes in while time runs
+  for (const feature of Object.keys(about.pictures).filter(one => about.pictures[one])) {  // no picture comes in while time runs
     const image = new Image();
     image.src = `/${feature}.png`;
     await image.decode().catch(() => {});
