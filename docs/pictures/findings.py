@@ -139,7 +139,7 @@ def rivals(suite, measured):
     lines.append(f"| *more than 0.05 above chance, and has learned no label* | {' | '.join(leaks)} |")
     return (f"    {measured['command']}\n\nHow often a rule without a language model and without training picks the meant object"
             f"{' and its receiver' if suite == 'fetch' else ''}, on scenes of seed {measured['scene_seed']}, which no preset publishes; "
-            f"[rivals.json](../../results/measured/rivals.json) has the intervals.\n\n" + "\n".join(lines) + "\n")
+            f"`results/measured/rivals.json` has the intervals.\n\n" + "\n".join(lines) + "\n")
 
 
 def with_rivals(page, text):

@@ -68,14 +68,13 @@ class Pages(unittest.TestCase):
             self.assertIn(f"{100 * table[row][-1]:.0f} %", words)
 
     def test_readme_says_what_the_tables_say(self):
-        results, clutter = ((SOURCE / "docs" / page).read_text() for page in ("results.md", "results/clutter.md"))
-        table = clutter.split("Success in 4 near misses, by demonstrations:")[1].split("Success in every arm")[0]
-        for row, words in {"GCBC-SEG": "whole picture succeeds in 45 %", "LGA": "model selected in 83 %", "Human": "true selection in 100 %"}.items():
-            self.assertIn(words, self.readme)
-            rates = re.search(rf"^\| {row} \| heat map \| [^|]*\| [\d.]+ [^|]*\| ([\d.]+) ", table, re.M)
-            self.assertEqual(words.split()[-2], f"{100 * float(rates[1]):.0f}", row)
-        self.assertIn("against 45 %), and with a command that nobody demonstrated: 95 % against 20 %", self.readme)
-        self.assertRegex(results, r"LGA has \S+ with these and 0\.95 with a new one; GCBC-SEG, which hears the command, \S+ and 0\.20,")
+        results = (SOURCE / "docs/results.md").read_text().split("<!-- board:steps -->")[1].split("<!-- /board -->")[0]
+        steps = {re.match(r"\| \[([^]]+)", line)[1]: [f"{100 * float(rate):.0f}" for rate in re.findall(r" (\d\.\d\d) ", line)][:4]
+                 for line in results.splitlines() if line.startswith("| [")}  # pixels, labels, language, truth
+        self.assertEqual(re.search(r"whole picture succeeds in (\d+) % .* no language\) in (\d+) %, what a language model selected in (\d+) %, "
+                                   r"and the truth in (\d+) %\.", self.readme).groups(), tuple(steps["Clutter and near misses"]))
+        pixels, labels, language, _ = steps[json.loads((SOURCE / "envs/tabletop/suites/many_commands.json").read_text())["about"]["title"]]
+        self.assertIn(f"command nobody demonstrated**: {language} % against {pixels} % from pixels and {labels} % from labels", self.readme)
         self.assertIn("LGA and GCBC-SEG both reach 81 to 82 % in `q1`", self.readme)
         with open(SOURCE / "results/leaderboard/leaderboard.csv") as file:
             q1 = {row["name"]: round(100 * float(row["success"])) for row in csv.DictReader(file)

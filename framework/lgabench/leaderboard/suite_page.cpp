@@ -44,6 +44,11 @@ std::string amount(double value) { return value == 0 ? "–" : fixed(value, valu
 struct Names {
   std::vector<std::string> names, labels, policies;
 };
+std::string without_underscores(std::string id) {
+  std::replace(id.begin(), id.end(), '_', ' ');
+  return id;
+}
+
 Names names_of(const std::vector<Standing>& all, const Labels& words) {
   std::map<std::pair<std::string, std::string>, std::set<Json>> values;  // by id and option
   for (const Standing& s : all)
@@ -72,7 +77,7 @@ Names names_of(const std::vector<Standing>& all, const Labels& words) {
     // One model's answers to all commands, where "recorded" may be several models'.
     const auto* from = std::get_if<RecordedAnswers>(&identity.answers);
     if (from && from->source != "recorded" && !identity.row.is_reference())
-      labels.back() += ", answers " + from->source;
+      labels.back() += ", answers " + without_underscores(from->source);
     ++labelled[{labels.back(), policies.back()}];
   }
   for (std::size_t i = 0; i < names.size(); ++i)
