@@ -6,7 +6,6 @@
 
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/leaderboard/areas.hpp>
-#include <lgabench/leaderboard/board_steps.hpp>
 #include <lgabench/leaderboard/titles.hpp>
 #include <lgabench/report/about_suite.hpp>
 #include <lgabench/report/bootstrap.hpp>
@@ -104,8 +103,8 @@ void add_results(report::Section& section, const NamedTable& table, const fs::pa
       {{what_was_played(setting) + " Ranks and episodes: ",
         Span::link(Titles(setting.suite).suite(), (board / (setting.suite + ".html")).generic_string()), "."}});
   if (table.standings.empty()) return;
-  if (const auto steps = steps_of(table.standings, table.track.answers, table.undisputed)) {
-    add_captioned(section, steps_grid(*steps, setting.suite, setting.name() + "_steps"));
+  if (table.steps) {
+    add_captioned(section, steps_grid(*table.steps, setting.suite, setting.name() + "_steps"));
     section.add<Paragraph>(reading, {{report::words_of_steps}});
     if (table.undisputed) section.add<Paragraph>(reading, {{words_of(*table.undisputed)}});
   }
@@ -127,9 +126,8 @@ Grid all_steps_grid(const Suites& suites) {
   for (const auto& [suite, tables] : suites) {
     const Titles titles(suite);
     for (const NamedTable& table : tables) {
-      if (table.track.kind != Track::abstraction || table.standings.empty()) continue;
-      const auto steps = steps_of(table.standings, table.track.answers, table.undisputed);
-      if (!steps) continue;
+      const std::optional<BoardSteps>& steps = table.steps;
+      if (!steps || table.track.kind != Track::abstraction) continue;
       Grid::Row row{{},
                     {Span::link(titles.suite(), "results/" + suite + ".md"), Span(titles.arm(steps->main.arm)),
                      Span::number(std::to_string(steps->main.demonstrations))}};

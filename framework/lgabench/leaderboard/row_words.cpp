@@ -34,8 +34,8 @@ std::string replayed_on(const Entry& entry) {
   return last;
 }
 
-Span id_span(const Entry& entry, const fs::path& board) {
-  Span span = Span::link(entry.id(), (board / entry.place() / "entry.json").string());
+Span id_span(const Entry& entry) {
+  Span span = Span::link(entry.id(), (entry.place() / "entry.json").string());
   span.emphasis = report::Emphasis::code;
   return span;
 }
@@ -104,7 +104,7 @@ std::optional<Paragraph> below_random_note(const std::vector<Standing>& standing
   return Paragraph{{mark, " " + mark.title + "."}};
 }
 
-std::optional<Grid> waiting_grid(const NamedTable& table, const fs::path& board) {
+std::optional<Grid> waiting_grid(const NamedTable& table) {
   if (table.waiting.empty()) return {};
   Grid grid;
   grid.name = table.setting.name() + "_waiting";
@@ -116,7 +116,7 @@ std::optional<Grid> waiting_grid(const NamedTable& table, const fs::path& board)
     grid.rows.push_back(
         {{},
          {TableCell(Span(table.waiting_labels[i])), Span(table.waiting_policies[i]), Span::number(score_text(s.score)),
-          Span(tier_and_marks(s)), Span(s.entry->about.at("by").get<std::string>()), id_span(*s.entry, board)},
+          Span(tier_and_marks(s)), Span(s.entry->about.at("by").get<std::string>()), id_span(*s.entry)},
          false});
   }
   return grid;

@@ -44,11 +44,6 @@ std::string amount(double value) { return value == 0 ? "–" : fixed(value, valu
 struct Names {
   std::vector<std::string> names, labels, policies;
 };
-std::string without_underscores(std::string id) {
-  std::replace(id.begin(), id.end(), '_', ' ');
-  return id;
-}
-
 Names names_of(const std::vector<Standing>& all, const Labels& words) {
   std::map<std::pair<std::string, std::string>, std::set<Json>> values;  // by id and option
   for (const Standing& s : all)
@@ -77,7 +72,7 @@ Names names_of(const std::vector<Standing>& all, const Labels& words) {
     // One model's answers to all commands, where "recorded" may be several models'.
     const auto* from = std::get_if<RecordedAnswers>(&identity.answers);
     if (from && from->source != "recorded" && !identity.row.is_reference())
-      labels.back() += ", answers " + without_underscores(from->source);
+      labels.back() += ", answers " + spaced(from->source);
     ++labelled[{labels.back(), policies.back()}];
   }
   for (std::size_t i = 0; i < names.size(); ++i)
@@ -315,6 +310,7 @@ std::vector<NamedTable> named_tables(const std::vector<const Entry*>& table, con
     named.ranking = ranking;
     if (track.kind == Track::abstraction) named.undisputed = undisputed_of(setting);
     named.standings = std::move(standing);
+    named.steps = steps_of(named.standings, track.answers, named.undisputed);
     Names names = names_of(named.standings, labels);
     named.names = std::move(names.names);
     named.labels = std::move(names.labels);
@@ -379,9 +375,9 @@ report::Document suite_document(const std::string& suite, const std::vector<Name
     if (table.ranking != Ranking::papers_network)
       if (auto answers = answers_section(table, id + "-answers")) document.sections.push_back(std::move(*answers));
     if (table.standings.empty()) continue;
-    if (const auto steps = steps_of(table.standings, table.track.answers, table.undisputed)) {
+    if (table.steps) {
       Section added{id + "-steps", "What labels, language and the truth add"};
-      added.add<Grid>(reading, steps_grid(*steps, suite, table.setting.name() + "_steps"));
+      added.add<Grid>(reading, steps_grid(*table.steps, suite, table.setting.name() + "_steps"));
       added.add<Paragraph>(reading,
                            {{fmt::format("{} Brackets: 95 % intervals over test scenes and training seeds of these "
                                          "scenarios, and over other scenarios as well.",

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/leaderboard/board_steps.hpp>
 #include <lgabench/leaderboard/labels.hpp>
 #include <lgabench/leaderboard/scenes.hpp>
 #include <lgabench/leaderboard/standings.hpp>
-#include <lgabench/leaderboard/undisputed.hpp>
 #include <lgabench/report/document.hpp>
 
 namespace lgabench::leaderboard {
@@ -25,6 +25,7 @@ struct NamedTable {
   Track track{};
   Ranking ranking = Ranking::any_policy;
   std::optional<Undisputed> undisputed;  // of the abstraction track
+  std::optional<BoardSteps> steps;
 
   /// "LGA, heat map"
   std::string full_name(std::size_t i) const;
@@ -38,8 +39,8 @@ std::string title_of(const NamedTable& table);
 /// Of an entry: the day when it was computed first, and that of its last verification that counts; "" without one.
 std::string computed_on(const Entry& entry);
 std::string replayed_on(const Entry& entry);
-/// Its id, which leads to its entry.json; `board` is where links find the board.
-report::Span id_span(const Entry& entry, const fs::path& board = "");
+/// Its id, which leads to its entry.json.
+report::Span id_span(const Entry& entry);
 /// Its commit or file, which leads to the repository where that has an address.
 report::Span source_span(const Entry& entry);
 /// With a capital.
@@ -64,9 +65,8 @@ std::string tier_and_marks(const Standing& standing);
 /// What ranks, marks and tiers mean, for readers who have read nothing else.
 report::Section words_of_the_board();
 
-/// Entries whose files are all that is known of them, and what they claim; none where there is none. `board` is where
-/// links find the board.
-std::optional<report::Grid> waiting_grid(const NamedTable& table, const fs::path& board = "");
+/// Entries whose files are all that is known of them, and what they claim; none where there is none.
+std::optional<report::Grid> waiting_grid(const NamedTable& table);
 
 /// A page for the tables of one suite.
 report::Document suite_document(const std::string& suite, const std::vector<NamedTable>& tables);

@@ -4,14 +4,11 @@
 #include <cctype>
 
 namespace lgabench::leaderboard {
-namespace {
 
 std::string spaced(std::string id) {
   std::replace(id.begin(), id.end(), '_', ' ');
   return id;
 }
-
-}  // namespace
 
 Titles::Titles(const std::string& suite) : id_(suite), about_(report::about_suite(suite)) {}
 
