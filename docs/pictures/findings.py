@@ -1,10 +1,8 @@
 #!/usr/bin/env python3
-"""Draws the small figures of docs/results.md's first table, and README's curves of clutter, from the tables of docs/results; and writes into those
-pages what results/measured/rivals.json says of rules without language.
+"""Draws the small figures of docs/results.md's first table, and README's curves of clutter, from the tables of docs/results.
 
 Usage: docs/pictures/findings.py [OUTPUT_DIR]
 """
-import json
 import pathlib
 import re
 import sys
@@ -37,6 +35,9 @@ FIGURES = {
     "commands": [("LGA, heard", "many_commands", BOARD, "LGA|heat map", SEEN), ("LGA, new", "many_commands", BOARD, "LGA|heat map", NEW),
                  ("SEG, heard", "many_commands", BOARD, "GCBC-SEG|heat map", SEEN), ("SEG, new", "many_commands", BOARD, "GCBC-SEG|heat map", NEW),
                  ("random object", "many_commands", BOARD, RANDOM, NEW)],
+    "instruction": [(label, "perturbations", "Is the instruction", row, "use of language") for label, row in (
+        ("mask of φ̂, LGA", "LGA"), ("GCBC-SEG", "GCBC-SEG"), ("any mask, words", "mask of any object, and words"),
+        ("any mask, no words", "mask of any object"))],
     "knowledge": [(label, "knowledge", RIGHT, row, "`clutter`") for label, row in (
         ("mask (LGA)", "`lga`"), ("picture, in training", "`erase+when=both`"), ("data", "`texture_aug`"), ("loss", "`masked_bc`"),
         ("nowhere (dropout)", "`object_dropout`"), ("random object", "*random visible object*"))],
@@ -114,48 +115,11 @@ def curves():
             + "".join(parts) + "</svg>\n")
 
 
-RIVALS = {"random_object": "random object in view", "largest": "largest in the picture", "first_listed": "first that the simulator lists",
-          "names": "names in the command", "word_vectors": "nearest by sentence embeddings", "constant_place": "nearest to the usual place",
-          "nearest_colour": "nearest mean colour", "nearest_outline": "nearest outline", "nearest_size": "nearest size",
-          "another_commands": "most demonstrated of another command", "least_demonstrated": "least demonstrated",
-          "most_demonstrated": "most demonstrated", "names_and_demonstrated": "names and most demonstrated", "bayes": "Bayes over types, textures, pairs"}
-
-
-def rivals(suite, measured):
-    """The lines of a suite's page: what finds the target without a language model and without training; "" of a suite outside the track."""
-    arms = {name: one for name, one in measured["suites"].items() if name.split("-")[0] == suite}
-    if not arms:
-        return ""
-    titles = json.loads(next((HERE.parents[1] / "envs").glob(f"*/suites/{suite}.json")).read_text())["about"].get("arm_titles", {})
-    heads = []
-    for name in arms:
-        _, preset, arm = name.split("-")
-        heads.append((titles.get(arm) or arm) + ("" if preset == "abstraction" else f" ({preset.removeprefix('abstraction_')})"))
-    lines = [f"| share of test scenes, at 1, 5, 20 demonstrations | {' | '.join(heads)} |", "| --- |" + " --- |" * len(arms)]
-    for rule in next(iter(arms.values()))["rivals"]:
-        rates = [" ".join(f"{by_number['rate'] + 1e-9:.2f}" for by_number in one["rivals"][rule].values()) for one in arms.values()]
-        lines.append(f"| {RIVALS[rule]} | {' | '.join(rates)} |")
-    leaks = [", ".join(RIVALS[rule] for rule in one["leaks"]) or "none" for one in arms.values()]
-    lines.append(f"| *more than 0.05 above chance, and has learned no label* | {' | '.join(leaks)} |")
-    return (f"    {measured['command']}\n\nHow often a rule without a language model and without training picks the meant object"
-            f"{' and its receiver' if suite == 'fetch' else ''}, on scenes of seed {measured['scene_seed']}, which no preset publishes; "
-            f"`results/measured/rivals.json` has the intervals.\n\n" + "\n".join(lines) + "\n")
-
-
-def with_rivals(page, text):
-    return re.sub(r"(<!-- rivals -->\n).*?(<!-- /rivals -->)", lambda found: f"{found[1]}\n{text}\n{found[2]}", page, flags=re.S)
-
-
 def main():
     out = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else HERE)
     for name, bars in FIGURES.items():
         (out / f"finding_{name}.svg").write_text(figure(bars))
     (out / "inputs.svg").write_text(curves())
-    measured = json.loads((HERE.parents[1] / "results/measured/rivals.json").read_text())
-    pages = HERE.parent / "results"
-    for page in sorted(pages.glob("*.md")):
-        if text := rivals(page.stem, measured):
-            ((out if out != HERE else pages) / page.name).write_text(with_rivals(page.read_text(), text))
 
 
 if __name__ == "__main__":

@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+"""Writes into the pages of docs/results and docs/results.md what results/measured says: runs that are no entries of the board, and rules
+without language. A page has a pair of markers <!-- measured:NAME --> and <!-- /measured --> for each table.
+
+Usage: docs/results/measured.py [OUTPUT_DIR]     # without it the pages themselves are written
+"""
+import json
+import pathlib
+import re
+import sys
+
+PAGES = pathlib.Path(__file__).parent
+ROOT = PAGES.parents[1]
+MEASURED = ROOT / "results/measured"
+RUNS = {file.stem: json.loads(file.read_text()) for file in (MEASURED / "runs").glob("*.json")}
+
+
+def table(heads, lines):
+    """A Markdown table whose first column is words and whose others are numbers."""
+    return "\n".join(f"| {' | '.join(line)} |" for line in [heads, ["---"] + ["---:"] * (len(heads) - 1), *lines]) + "\n"
+
+
+def commands(*runs):
+    return "".join(f"    {RUNS[run]['command']}\n" for run in runs) + "\n"
+
+
+def number(rate):
+    return f"{rate + 1e-9:.2f}"  # 0.125 is 0.13, as the programs print it
+
+
+def interval(of, sign=""):
+    return f"{of['low']:{sign}.2f}, {of['high']:{sign}.2f}"
+
+
+def success(run, method, arm, demonstrations=5):
+    """The row's mean over scenarios in the arm."""
+    return next(row for row in RUNS[run]["rows"] if (row["method"], row["arm"]) == (method, arm) and row["demonstrations"] in (demonstrations, 0))
+
+
+ROWS = {"lga": "LGA", "human": "Human", "lga_s": "LGA-S", "gcbc_seg": "GCBC-SEG", "factorial+input=object_mask_and_words": "mask of any object, and words",
+        "factorial+input=object_mask": "mask of any object"}
+
+
+def instruction():
+    """Whether a policy hears the command."""
+    lines = []
+    for row in RUNS["instruction"]["instruction"]:
+        levels, total = row["levels"], sum(row["control"].values())
+        other = levels["another command"]
+        share = [number(other["took"].get(what, 0) / total) for what in ("other", "own", "third", "none")]
+        lines.append([ROWS[row["method"]], number(row["control"]["own"] / total), *(number(levels[level]["success"]) for level in ("empty", "nonsense")),
+                      *share, f"{other['use']['difference']:.2f} [{interval(other['use'])}]"])
+    return commands("instruction") + table(
+        ["", "own command", "no words", "nonsense", "another command: took what that means", "what the scene was made for", "a third", "nothing",
+         "use of language"], lines)
+
+
+# The paper's figure 3a, and the runs of the settings that were tried: layout and network's preset, batches.
+SETTINGS = {"paper_drawn": "`paper`: layout `continuous`, `batches=drawn`", "paper_shuffled": "`paper`, `batches=shuffled`",
+            "text_drawn": "`paper_text`: layout `cells`, `loss=squared`, `picture=rgb`, `batches=drawn`", "text_shuffled": "`paper_text`, `batches=shuffled`"}
+PAPER = json.loads((ROOT / "results/paper/reference_results.json").read_text())["figure_3a_success_vs_demonstrations"]
+COMPARED = {"LGA": "lga", "Human": "human", "GCBC-SEG": "gcbc_seg"}
+
+
+def fidelity():
+    """Every point of the paper's figure beside those of each setting."""
+    lists = lambda rates: " ".join(number(rate) for rate in rates)
+    lines = [["*the paper*", *(f"*{lists(PAPER[name]['mean'])}*" for name in COMPARED), "", "", ""],
+             ["*its error bars*", *(f"*{lists(PAPER[name]['err'])}*" for name in COMPARED), "", "", ""]]
+    for setting, words in SETTINGS.items():
+        points = {name: [success(f"fidelity_{setting}", method, "test", n)["success"] for n in PAPER["demonstrations"]]
+                  for name, method in COMPARED.items()}
+        apart = [(abs(rate - mean), err) for name in COMPARED for rate, mean, err in zip(points[name], PAPER[name]["mean"], PAPER[name]["err"])]
+        near = sum(distance <= 1.5 * err for distance, err in apart)
+        lines.append([words, *(lists(rates) for rates in points.values()), f"{near} of {len(apart)}", f"{sum(d for d, _ in apart) / len(apart):.3f}",
+                      f"{sum(d / err for d, err in apart) / len(apart):.1f}"])
+    return commands(*(f"fidelity_{setting}" for setting in SETTINGS)) + table(
+        ["setting (13 scenarios, 3 seeds)", *(f"{name}, 10 to 50" for name in COMPARED), "points within 1.5 error bars", "mean distance", "in error bars"], lines)
+
+
+MAIN_ARMS = {"clutter": ("Clutter and near misses", "near_4"), "few": ("Members that nobody demonstrated", "new_decisive_1"),
+             "many": ("Many commands, one policy", "unseen_commands_7")}
+
+
+def unseen_seed():
+    """The steps of the main arms on scenes that no preset publishes."""
+    lines = []
+    for name, (title, arm) in MAIN_ARMS.items():
+        labels, language, truth = (success(f"unseen_seed_{name}{run}", method, arm) for run, method in
+                                   (("_labels", "taken_features"), ("", "selected_by:lga"), ("", "selected_by:human")))
+        share = labels["success"] / truth["success"]
+        lines.append([title, *(f"{number(row['success'])} [{interval(row)}]" for row in (labels, language, truth)),
+                      f"{number(share)}{'' if share <= .8 else ', above the limit'}"])
+    return commands(*(f"unseen_seed_{name}{run}" for name in MAIN_ARMS for run in ("_labels", ""))) + table(
+        ["suite", "labels", "language", "truth", "labels to truth, limit 0.80"], lines)
+
+
+RULES = {"random_object": "random object in view", "largest": "largest in the picture", "first_listed": "first that the simulator lists",
+          "names": "names in the command", "word_vectors": "nearest by sentence embeddings", "constant_place": "nearest to the usual place",
+          "nearest_colour": "nearest mean colour", "nearest_outline": "nearest outline", "nearest_size": "nearest size",
+          "another_commands": "most demonstrated of another command", "least_demonstrated": "least demonstrated",
+          "most_demonstrated": "most demonstrated", "names_and_demonstrated": "names and most demonstrated", "bayes": "Bayes over types, textures, pairs"}
+
+
+def rivals(suite):
+    """What finds the target without a language model and without training."""
+    measured = json.loads((MEASURED / "rivals.json").read_text())
+    arms = {name: one for name, one in measured["suites"].items() if name.split("-")[0] == suite}
+    titles = json.loads(next((ROOT / "envs").glob(f"*/suites/{suite}.json")).read_text())["about"].get("arm_titles", {})
+    heads = []
+    for name in arms:
+        _, preset, arm = name.split("-")
+        heads.append((titles.get(arm) or arm) + ("" if preset == "abstraction" else f" ({preset.removeprefix('abstraction_')})"))
+    lines = [f"| share of test scenes, at 1, 5, 20 demonstrations | {' | '.join(heads)} |", "| --- |" + " --- |" * len(arms)]
+    for rule in next(iter(arms.values()))["rivals"]:
+        rates = [" ".join(f"{by_number['rate'] + 1e-9:.2f}" for by_number in one["rivals"][rule].values()) for one in arms.values()]
+        lines.append(f"| {RULES[rule]} | {' | '.join(rates)} |")
+    leaks = [", ".join(RULES[rule] for rule in one["leaks"]) or "none" for one in arms.values()]
+    lines.append(f"| *more than 0.05 above chance, and has learned no label* | {' | '.join(leaks)} |")
+    return (f"    {measured['command']}\n\nHow often a rule without a language model and without training picks the meant object"
+            f"{' and its receiver' if suite == 'fetch' else ''}, on scenes of seed {measured['scene_seed']}, which no preset publishes; "
+            f"`results/measured/rivals.json` has the intervals.\n\n" + "\n".join(lines) + "\n")
+
+
+def rewritten(page):
+    """The page's text with each marked table made anew."""
+    tables = {"instruction": instruction, "fidelity": fidelity, "unseen_seed": unseen_seed, "rivals": lambda: rivals(page.stem)}
+    return re.sub(r"(<!-- measured:(\w+) -->\n).*?(<!-- /measured -->)", lambda found: f"{found[1]}\n{tables[found[2]]()}\n{found[3]}",
+                  page.read_text(), flags=re.S)
+
+
+def main():
+    out = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else None
+    for page in [PAGES.parent / "results.md", *sorted(PAGES.glob("*.md"))]:
+        if "<!-- measured:" in page.read_text():
+            (out / page.name if out else page).write_text(rewritten(page))
+
+
+if __name__ == "__main__":
+    main()
