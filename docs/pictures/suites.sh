@@ -20,8 +20,7 @@ for arm in few many near; do draw fetch_ripe_fruit $arm 12.5% table fetch; done
 draw words_relation_heart_left_of_bowl test 25% continuous
 draw drawn_2026_colour_01 test 25% continuous
 draw paraphrase_heart original 25% continuous
-for arm in control distractors_4 object_size_4 {light_intensity,light_direction,light_colour,camera_shift,camera_turn,field_of_view,texture_noise,segmentation}_4 table_{1,3}; do draw heart $arm 25% continuous perturbations; done
-for arm in sensor_noise_4 table_2 table_4 all_4; do draw heart $arm 12.5% continuous perturbations; done  # noise and grain make large files
+draw heart control 25% continuous perturbations
 for others in 1 2 4 6; do for kind in others near; do draw something_to_drink_water_out_of ${kind}_$others 25% continuous clutter; done; done
 for arm in seen new seen_near new_near; do
   draw something_to_drink_water_out_of_members_2 ${arm}_members_2 25% continuous few_members

@@ -675,7 +675,8 @@ class Gallery(Case):
             file, legend = printed.split("\n\n", 1)
             self.assertEqual(file, "sheet.png")
             self.assertTrue((self.dir / file).read_bytes().startswith(b"\x89PNG"))
-            self.assertIn(legend, page, f"write the sheets and their legends anew: lgabench render --gallery {what}")
+            filled = f"<!-- gallery:{what} -->\n\n{legend}\n<!-- /gallery -->\n" in page
+            self.assertTrue(filled, f"{what}: docs/tables.py --gallery LGABENCH draws the sheets and writes their legends")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,143 @@
+#!/usr/bin/env python3
+"""Writes what docs/suites.md says from the suites' JSON files, between `<!-- suites:... -->` and `<!-- /suites -->`: overviews,
+and of each suite its title, rows and arms. With --gallery also the sheets of docs/gallery.md and their legends.
+
+Usage: docs/tables.py [--gallery LGABENCH] [OUTPUT_DIR]
+"""
+import argparse
+import json
+import pathlib
+import re
+import subprocess
+
+HERE = pathlib.Path(__file__).resolve().parent
+SUITES = {file.stem: json.loads(file.read_text()) for file in sorted(HERE.parent.glob("envs/*/suites/*.json"))}
+PAPER = {"network": "text", "loss": "norm", "batches": "drawn"}  # what these options are anyway
+GENERAL = "paper_text", "smoke"  # docs/suites.md says what they are in any suite
+# Arms whose scenes look as another picture: what differs does not show.
+LOOKS_LIKE = {("robustness", "hard"): "q2_heart-hard", ("mobile", "perceived"): "bring_fruit-moved",
+              ("mobile", "perceived_hard"): "bring_fruit-moved", ("fetch", "perceived"): "fetch_ripe_fruit-near"}
+
+
+def listed(values):
+    """1, 5 and 20; 0 to 9."""
+    words = [str(value) for value in values]
+    if len(words) > 2 and isinstance(values[0], int) and values == list(range(values[0], values[-1] + 1)):
+        return f"{words[0]} to {words[-1]}"
+    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
+
+
+def code(values):
+    return ", ".join(f"`{value}`" for value in values)
+
+
+def options(of):
+    """What every row has beside the paper's network, and what one method has."""
+    every = [f"{name}={value}" for name, value in of.get("*", {}).items() if PAPER.get(name) != value]
+    return code(every + [f"{method}: {name}={value}" for method, its in of.items() if method != "*" for name, value in its.items()])
+
+
+def picture(suite, arm):
+    """The small picture of an arm: of the suite's name or of a scenario's; else of the suite's first arm, where only words or labels differ."""
+    for name in [suite["id"], *suite["scenarios"]]:
+        if (HERE / f"pictures/suites/{name}-{arm}.png").exists():
+            return f"![{suite['id']}, {arm}](pictures/suites/{name}-{arm}.png)"
+    if (suite["id"], arm) in LOOKS_LIKE:
+        return f"![{suite['id']}, {arm}](pictures/suites/{LOOKS_LIKE[suite['id'], arm]}.png)"
+    return picture(suite, next(iter(suite["about"]["arms"])))
+
+
+def differs(suite, preset):
+    """In words, what a preset has otherwise than the suite."""
+    parts = [f"{listed(preset['demonstrations'])} demonstrations"] if "demonstrations" in preset else []
+    parts += [f"arms {code(preset['arms'])}"] if "arms" in preset else []
+    parts += [f"{len(preset['methods'])} rows"] if "methods" in preset else []
+    parts += [f"{len(preset['scenarios'])} {'other ' * (not set(preset['scenarios']) <= set(suite['scenarios']))}scenarios"] if "scenarios" in preset else []
+    parts += [options(preset["options"]) or "the paper's network"] if "options" in preset else []
+    parts += [f"axes {code(axis['axis'] for axis in preset['perturbations'])}"] if "perturbations" in preset else []
+    return ", ".join(parts)
+
+
+def sizes(order):
+    """A line for each suite: how large it is, and its presets."""
+    lines = ["| suite | rows | training seeds | test scenes an arm | `leaderboard` | further presets |", "| --- | --- | --- | --- | --- | --- |"]
+    for suite in (SUITES[name] for name in order):
+        board = suite["presets"].get("leaderboard")
+        entries = f"{len(board.get('methods', suite['methods']))} rows, {board.get('episodes', suite['episodes'])} scenes" if board else "–"
+        more = [f"`{name}`" + (f" ({said})" if said else "")
+                for name, said in ((name, name not in GENERAL and differs(suite, preset)) for name, preset in suite["presets"].items())
+                if name != "leaderboard"]
+        own = ", others for each seed" if suite.get("test_scenes") == "per_seed" else ""
+        lines.append(f"| `{suite['id']}` | {len(suite['methods'])} | {listed(suite['seeds'])} | {suite['episodes']}{own} | {entries} | {'; '.join(more)} |")
+    return lines
+
+
+def arms(suite):
+    about = suite["about"]
+    lines = ["| arm | test scenes | picture |", "| --- | --- | --- |"]
+    for arm, scenes in about["arms"].items():
+        name, title = f"`{arm}`", about.get("arm_titles", {}).get(arm, arm)
+        lines.append(f"| {name if title.replace(',', '').split() == arm.split('_') else f'{name} ({title})'} | {scenes} | {picture(suite, arm)} |")
+    return lines
+
+
+def same_demonstrations(suite):
+    trains = [json.loads(next(HERE.parent.glob(f"envs/*/scenarios/{scenario}.json")).read_text()).get("train", {}) for scenario in suite["scenarios"]]
+    return not any({**train, **suite.get("train", {})}.get("as_method_asks", True) for train in trains)
+
+
+def section(suite):
+    about, every = suite["about"], options(suite["options"])
+    said = [f"Main arm `{about['main_arm']}`." if len(about["arms"]) > 1 else "", f"Rows: {code(suite['methods'])}" + (f"; all with {every}." if every else ".")]
+    said.append("All methods learn from the same demonstrations." if same_demonstrations(suite) else
+                "Training targets come from what a method selects, for methods that select.")
+    said.append(f"Reference rows besides the usual ones: {code(suite['references'])}." if "references" in suite else "")
+    if "variants" in suite:
+        said.append(f"Each scenario is played in {len(suite['variants'])} variants, "
+                    f"{listed([f'`{name}`' for name in suite['variants']])}; names of arms end in the variant's.")
+    return [f"## `{suite['id']}`: {about['title']}", " ".join(filter(None, said)), "", *arms(suite)]
+
+
+def anchor(heading):
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+
+
+def overview(order):
+    lines = ["| suite | question | scenarios | demonstrations | policy |", "| --- | --- | --- | --- | --- |"]
+    for suite in (SUITES[name] for name in order):
+        policy = "keeps spatial positions" if suite["options"]["*"].get("policy") == "heat_map" else "the paper's network"
+        lines.append(f"| [`{suite['id']}`](#{anchor(section(suite)[0][3:])}) | {suite['about']['question']} | {len(suite['scenarios'])} | "
+                     f"{listed(suite['demonstrations'])} | {policy} |")
+    return lines
+
+
+def filled(page, kind, contents):
+    """The page with the lines of contents(name) between `<!-- kind:name -->` and `<!-- /kind -->`."""
+    return re.sub(rf"(<!-- {kind}:(\w+) -->\n).*?(<!-- /{kind} -->)",
+                  lambda found: f"{found[1]}\n" + "\n".join(contents(found[2])) + f"\n\n{found[3]}", page, flags=re.S)
+
+
+def sheet(lgabench, what):
+    done = subprocess.run([lgabench, "render", "--gallery", what, "--out", HERE / f"pictures/{what}.png"], check=True, capture_output=True, text=True)
+    return done.stdout.split("\n\n", 1)[1].rstrip("\n").split("\n")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("output", nargs="?", type=pathlib.Path, default=HERE)
+    parser.add_argument("--gallery", metavar="LGABENCH")
+    given = parser.parse_args()
+    page = (HERE / "suites.md").read_text()
+    order = [name for name in re.findall(r"<!-- suites:(\w+) -->", page) if name not in ("overview", "sizes")]
+    if sorted(order) != sorted(SUITES):
+        raise SystemExit(f"docs/suites.md has no place for {sorted(set(SUITES) ^ set(order))}")
+    whole = {"overview": overview, "sizes": sizes}
+    (given.output / "suites.md").write_text(filled(
+        page, "suites", lambda name: whole[name](order) if name in whole else section(SUITES[name])))
+    if given.gallery:
+        page = (HERE / "gallery.md").read_text()
+        (given.output / "gallery.md").write_text(filled(page, "gallery", lambda what: sheet(given.gallery, what)))
+
+
+if __name__ == "__main__":
+    main()
