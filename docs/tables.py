@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Writes what docs/suites.md says from the suites' JSON files, between `<!-- suites:... -->` and `<!-- /suites -->`: overviews,
-and of each suite its title, rows and arms. With --gallery also the sheets of docs/gallery.md and their legends.
+and of each suite its title, rows and arms. With the built program also docs/protocol.md's table of perturbation axes and, with --gallery,
+docs/gallery.md's sheets with their legends.
 
-Usage: docs/tables.py [--gallery LGABENCH] [OUTPUT_DIR]
+Usage: docs/tables.py [--program LGABENCH [--gallery]] [OUTPUT_DIR]
 """
 import argparse
 import json
@@ -117,15 +118,30 @@ def filled(page, kind, contents):
                   lambda found: f"{found[1]}\n" + "\n".join(contents(found[2])) + f"\n\n{found[3]}", page, flags=re.S)
 
 
-def sheet(lgabench, what):
-    done = subprocess.run([lgabench, "render", "--gallery", what, "--out", HERE / f"pictures/{what}.png"], check=True, capture_output=True, text=True)
-    return done.stdout.split("\n\n", 1)[1].rstrip("\n").split("\n")
+def said(lgabench, *arguments):
+    return subprocess.run([lgabench, *arguments], check=True, capture_output=True, text=True).stdout
+
+
+def axes(lgabench):
+    lines = ["| axis | level 1 | 2 | 3 | 4 | changes |", "| --- |" + " --- |" * 5]
+    for of in json.loads(said(lgabench, "list", "--json"))["perturbations"]:
+        axis = json.loads(said(lgabench, "info", of["id"], "--json"))
+        levels = [re.sub(r"\bx\b", "×", re.sub(r"(?<!\d)\.(?=\d)", "0.", level)) for level in axis["levels"]] + ["–"] * (4 - len(axis["levels"]))
+        changes = axis["changes"] + ([f"sometimes {', '.join(axis['may_change'])}"] if "may_change" in axis else [])
+        lines.append(f"| `{axis['id']}` | {' | '.join(levels)} | {', '.join(changes)} |")
+    return lines
+
+
+def sheet(lgabench, what, pictures):
+    pictures.mkdir(exist_ok=True)
+    return said(lgabench, "render", "--gallery", what, "--out", pictures / f"{what}.png").split("\n\n", 1)[1].rstrip("\n").split("\n")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("output", nargs="?", type=pathlib.Path, default=HERE)
-    parser.add_argument("--gallery", metavar="LGABENCH")
+    parser.add_argument("--program", metavar="LGABENCH")
+    parser.add_argument("--gallery", action="store_true")
     given = parser.parse_args()
     page = (HERE / "suites.md").read_text()
     order = [name for name in re.findall(r"<!-- suites:(\w+) -->", page) if name not in ("overview", "sizes")]
@@ -134,9 +150,12 @@ def main():
     whole = {"overview": overview, "sizes": sizes}
     (given.output / "suites.md").write_text(filled(
         page, "suites", lambda name: whole[name](order) if name in whole else section(SUITES[name])))
-    if given.gallery:
+    if given.program:
+        page = (HERE / "protocol.md").read_text()
+        (given.output / "protocol.md").write_text(filled(page, "program", lambda _: axes(given.program)))
+    if given.program and given.gallery:
         page = (HERE / "gallery.md").read_text()
-        (given.output / "gallery.md").write_text(filled(page, "gallery", lambda what: sheet(given.gallery, what)))
+        (given.output / "gallery.md").write_text(filled(page, "gallery", lambda what: sheet(given.program, what, given.output / "pictures")))
 
 
 if __name__ == "__main__":

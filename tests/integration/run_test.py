@@ -676,7 +676,7 @@ class Gallery(Case):
             self.assertEqual(file, "sheet.png")
             self.assertTrue((self.dir / file).read_bytes().startswith(b"\x89PNG"))
             filled = f"<!-- gallery:{what} -->\n\n{legend}\n<!-- /gallery -->\n" in page
-            self.assertTrue(filled, f"{what}: docs/tables.py --gallery LGABENCH draws the sheets and writes their legends")
+            self.assertTrue(filled, f"{what}: docs/tables.py --program LGABENCH --gallery draws the sheets and writes their legends")
 
 
 if __name__ == "__main__":

@@ -330,6 +330,13 @@ class Commands(unittest.TestCase):
         wanted = "--help-all" if verb in (("run",), ("cluster",)) else "--help"
         return subprocess.run([LGABENCH, *verb, wanted], capture_output=True, text=True).stdout
 
+    def test_the_table_of_axes_is_the_programs(self):
+        with tempfile.TemporaryDirectory() as made:
+            subprocess.run([sys.executable, SOURCE / "docs/tables.py", "--program", LGABENCH, made], check=True)
+            filled = (pathlib.Path(made) / "protocol.md").read_text()
+            self.assertIn("`sensor_noise`", filled.split("<!-- program:axes -->")[1].split("<!-- /program -->")[0])
+            self.assertEqual((SOURCE / "docs/protocol.md").read_text(), filled, "docs/tables.py --program LGABENCH writes it")
+
     def test_commands_and_options_exist(self):
         verbs = set(re.findall(r"^  ([a-z][a-z-]*)  ", self.help_of(), re.M))
         wrong = []
