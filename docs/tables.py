@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes what docs/suites.md says from the suites' JSON files, between `<!-- suites:... -->` and `<!-- /suites -->`: overviews,
-and of each suite its title, rows and arms. With the built program also docs/protocol.md's table of perturbation axes and, with --gallery,
-docs/gallery.md's sheets with their legends.
+and of each suite its title, rows and arms. With the built program also docs/protocol.md's tables of reference rows and perturbation axes
+and, with --gallery, docs/gallery.md's sheets with their legends.
 
 Usage: docs/tables.py [--program LGABENCH [--gallery]] [OUTPUT_DIR]
 """
@@ -132,6 +132,11 @@ def axes(lgabench):
     return lines
 
 
+def references(lgabench):
+    return ["| reference row | is |", "| --- | --- |"] + [f"| `{row['id']}` | {row['summary']} |"
+                                                       for row in json.loads(said(lgabench, "list", "--json"))["reference rows"]]
+
+
 def sheet(lgabench, what, pictures):
     pictures.mkdir(exist_ok=True)
     return said(lgabench, "render", "--gallery", what, "--out", pictures / f"{what}.png").split("\n\n", 1)[1].rstrip("\n").split("\n")
@@ -152,7 +157,7 @@ def main():
         page, "suites", lambda name: whole[name](order) if name in whole else section(SUITES[name])))
     if given.program:
         page = (HERE / "protocol.md").read_text()
-        (given.output / "protocol.md").write_text(filled(page, "program", lambda _: axes(given.program)))
+        (given.output / "protocol.md").write_text(filled(page, "program", lambda name: {"axes": axes, "references": references}[name](given.program)))
     if given.program and given.gallery:
         page = (HERE / "gallery.md").read_text()
         (given.output / "gallery.md").write_text(filled(page, "gallery", lambda what: sheet(given.program, what, given.output / "pictures")))

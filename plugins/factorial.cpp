@@ -1,5 +1,5 @@
 // What a Selection does to the data apart from what it does to the input: every pair of training scenes and picture
-// (docs/protocol.md, section 4). No text input but with object_mask_and_words. With all defaults it is LGA. With
+// (docs/suites.md). No text input but with object_mask_and_words. With all defaults it is LGA. With
 // policy=centroid, what an abstraction is worth to a policy that need not learn where pixels are.
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/learning/cloning_method.hpp>

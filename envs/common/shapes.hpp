@@ -12,7 +12,7 @@ struct Shape {
   Drawing (*draw)();
 };
 
-/// The paper's object types, in the order of the tabletop space. Sizes from docs/protocol.md, section 1.
+/// The paper's object types, in the order of the tabletop space. Sizes: docs/gallery.md.
 const std::vector<Shape>& shapes();
 
 /// What the household space has beyond the tabletop's, in its order.

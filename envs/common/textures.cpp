@@ -14,7 +14,7 @@
 namespace lgabench::common {
 namespace {
 
-// docs/protocol.md, section 1.
+// docs/gallery.md.
 const std::map<std::string, Rgb> palette{
     {"blue", {78, 121, 167}},   {"red", {255, 87, 89}},     {"green", {89, 169, 79}},
     {"orange", {242, 142, 43}}, {"yellow", {237, 201, 72}}, {"purple", {176, 122, 161}},

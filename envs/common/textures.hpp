@@ -32,7 +32,7 @@ struct Texture {
 /// The texture of that name; made at the first call, lives as long as the program. Any thread.
 /// Names: a colour, "C and C stripe", "C and C polka dot", "C swirl" or "C paisley", each possibly after "dark", which
 /// darkens every colour that follows; or a material (brick, tiles, wooden, granite, plastic, polka dot, checkerboard,
-/// tiger, magma, rainbow). Colours and "dark" (HSV value - .3) as in docs/protocol.md, section 1.
+/// tiger, magma, rainbow). Colours and "dark" (HSV value - .3) as in docs/gallery.md.
 /// @throws InputError for any other name.
 const Texture& texture(const std::string& name);
 

@@ -213,7 +213,7 @@ std::vector<Features> sample_distractors(const Request& request, const Features&
   return distractors;
 }
 
-// docs/protocol.md, section 4 (q3): all types of the choice, in random order, but a target first.
+// docs/suites.md (q3): all types of the choice, in random order, but a target first.
 std::vector<SceneObject> sample_choice(const Request& request, RandomStream random) {
   const auto second = request.task.second();
   if (second && !request.meant.second)

@@ -200,7 +200,7 @@ TEST(ObjectTypes, BottlesCansAndBoxesStand) {
   EXPECT_EQ(upright, (std::set<std::string>{"juice box", "soda can", "water bottle"}));
 }
 
-// docs/protocol.md, section 1; x is up and down in the picture, y left and right.
+// docs/gallery.md; x is up and down in the picture, y left and right.
 TEST(ObjectTypes, HaveTheProtocolsSizes) {
   const auto expect = [](const std::string& type, double x, double y, std::optional<double> height) {
     const ObjectModel& model = object_model(type);

@@ -1,5 +1,5 @@
 // What tells a target that nobody demonstrated: its command alone. many_commands' unheard commands, and few_members'
-// new members by what decides (docs/protocol.md, section 4).
+// new members by what decides (docs/suites.md).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -141,7 +141,7 @@ class Sweep final : public Task {
     if (read.empty()) scenes->at(distances).fail("at least one distance");
   }
 
-  // docs/protocol.md, section 3 and 4: obstacles bar one side of the target's row, distractors stand in the other row,
+  // docs/suites.md (q3): obstacles bar one side of the target's row, distractors stand in the other row,
   // or where they bar the way themselves (touching them is allowed) opposite the obstacle.
   void place(const Layout& layout, const Content& content, std::vector<SceneObject>& objects,
              const Streams& stream) const override {
