@@ -1,4 +1,4 @@
-// A perturbation axis (docs/add-a-perturbation.md): colours fade to a grey, as fog does.
+// A perturbation axis (docs/extending.md): colours fade to a grey, as fog does.
 #include <lgabench/plugin/plugin.hpp>
 
 namespace {

@@ -1,4 +1,4 @@
-// The smallest engine that fulfils the contract (docs/add-an-engine.md walks through it). Nothing has speed or weight:
+// The smallest engine that fulfils the contract (docs/extending.md walks through it). Nothing has speed or weight:
 // suction carries exactly, the blade moves what it meets just out of its way, and a released body lies on what is
 // below it. Bodies never tilt, and each convex piece counts as an upright prism.
 #include <algorithm>

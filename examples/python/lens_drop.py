@@ -1,4 +1,4 @@
-"""A perturbation axis (docs/add-a-perturbation.md): a drop on the lens hides what is behind it, from the policy and the segmenter."""
+"""A perturbation axis (docs/extending.md): a drop on the lens hides what is behind it, from the policy and the segmenter."""
 from dataclasses import replace
 
 import numpy

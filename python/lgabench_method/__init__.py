@@ -1,6 +1,6 @@
 """Methods for lgabench in Python: what they are given, and what they return.
 
-A method is a class in a file; `lgabench run q1 --methods my_method.py:MyMethod` runs it (docs/add-a-method-in-python.md):
+A method is a class in a file; `lgabench run q1 --methods my_method.py:MyMethod` runs it (docs/add-a-method.md):
 
     class MyMethod:
         version = "0.1"
@@ -13,7 +13,7 @@ A method is a class in a file; `lgabench run q1 --methods my_method.py:MyMethod`
         def learn(self, demonstrations, services): ...
             # an object with act(observation, instruction), and maybe reset() and shown(), a Shown
 
-A perturbation axis is a class too, with `levels` and perceive(seen, level, stream) (docs/add-a-perturbation.md).
+A perturbation axis is a class too, with `levels` and perceive(seen, level, stream) (docs/extending.md).
 
 Needs NumPy alone. One thread; the same seed must give the same bytes.
 """

@@ -50,7 +50,7 @@ def q1_table():
 
 
 class Pages(unittest.TestCase):
-    page = (SOURCE / "docs/add-a-method.md").read_text()
+    page, extending = ((SOURCE / "docs" / name).read_text() for name in ("add-a-method.md", "extending.md"))
     readme = " ".join((SOURCE / "README.md").read_text().split())
 
     def test_the_figure_and_the_text_beside_it_are_the_table(self):
@@ -138,61 +138,65 @@ class Pages(unittest.TestCase):
         self.assertLessEqual(len(page.split()), 700)
         self.assertEqual([line.split()[0] for line in split_code(page)[1][:2]], ["./quickstart", "./test"])
 
-    def test_shown_code_is_the_example(self):
-        for page, name, lines in ("method", "select_only", 25), ("network", "own_network", 90):
-            example = SOURCE / "examples" / name
-            for language, file in ("cpp", f"{name}.cpp"), ("cmake", "CMakeLists.txt"):
-                shown = re.search(rf"```{language}\n(.*?)```", (SOURCE / f"docs/add-a-{page}.md").read_text(), re.S)[1]
-                self.assertEqual(shown, (example / file).read_text())
-            self.assertLessEqual(len((example / f"{name}.cpp").read_text().splitlines()), lines)
-        copies = (SOURCE / "examples/noisy_copies/noisy_copies.cpp").read_text()
-        self.assertIn(f"```cpp\n{copies}```", (SOURCE / "docs/add-a-method.md").read_text())
-        self.assertLessEqual(len(copies.splitlines()), 40)
+    def test_the_smallest_method_is_shown_whole(self):
+        example = SOURCE / "examples/select_only"
+        for language, file in ("cpp", "select_only.cpp"), ("cmake", "CMakeLists.txt"):
+            shown = re.search(rf"```{language}\n(.*?)```", self.page, re.S)[1]
+            self.assertEqual(shown, (example / file).read_text())
+        for name, lines in ("select_only", 25), ("noisy_copies", 40), ("own_network", 90):
+            self.assertLessEqual(len((SOURCE / "examples" / name / f"{name}.cpp").read_text().splitlines()), lines)
 
-    def test_shown_code_is_that_of_the_task(self):
-        page, tabletop = (SOURCE / "docs/add-a-task.md").read_text(), SOURCE / "envs/tabletop"
-        scenario = json.loads((tabletop / "scenarios/stack_small_block_on_hexagon.json").read_text())
-        code = " ".join((tabletop / "tasks/stack.cpp").read_text().split())
-        shown = [block for block in re.findall(r"(?:^ {4}.*\n|^\n(?= {4}))+", page, re.M) if "const override" in block or "task_stack" in block]
-        self.assertEqual(len(shown), 4)
-        for block in shown:
-            self.assertIn(" ".join(block.split()), code)
-        example = json.loads(re.search(r"^    \{\n     \"id\": \"stack_.*?^    \}\n", page, re.S | re.M)[0])
-        self.assertEqual(example, {member: value for member, value in scenario.items() if member != "note"})
+    def test_shown_code_is_that_of_examples(self):
+        """Each other block of C++ stands so, line by line, in an example or in the task that the page follows."""
+        code = [file.read_text() for file in [*(SOURCE / "examples").glob("*/*.cpp"), SOURCE / "envs/tabletop/tasks/stack.cpp"]]
+        for page, blocks in (self.page, 2), (self.extending, 3):
+            shown = re.findall(r"^```cpp\n(.*?)^```", page, re.S | re.M)
+            self.assertEqual(len(shown), blocks)
+            for block in shown:
+                self.assertTrue(any(block in one for one in code), block)
 
     def test_headers_that_authors_pages_name_are_installed(self):
-        """As cmake/LgabenchHelpers.cmake lists them."""
+        """As cmake/LgabenchHelpers.cmake lists them; where a page links a header, it is one of the sources."""
         listed = re.search(r"set\(lgabench_public_headers\n([^)]+)\)", (SOURCE / "cmake/LgabenchHelpers.cmake").read_text())
-        there = set(listed[1].split())
-        for page in "add-a-method", "add-a-network", "add-an-engine", "add-a-perturbation":
-            named = set(re.findall(r"[`<](?:lgabench/)?(\w+/\w+\.hpp)[`>]", (SOURCE / f"docs/{page}.md").read_text()))
-            self.assertEqual(named - there, set(), page)
+        for page, least in (self.page, 11), (self.extending, 3):
+            named = set(re.findall(r"[`<](?:lgabench/)?((?:core|plugin|abstraction|learning)/\w+\.hpp)[`>]", page))
+            self.assertGreaterEqual(len(named), least)
+            self.assertEqual(named - set(listed[1].split()), set())
 
     @unittest.skipUnless(shutil.which("git"), "needs git")
     def test_the_patch_of_a_statistic_applies(self):
-        page = (SOURCE / "docs/add-a-statistic.md").read_text()
-        patch = "".join(re.findall(r"^```diff\n(.*?)^```", page, re.S | re.M))
-        self.assertGreater(patch.count("+++ "), 5)
+        self.assertIn("git apply examples/statistic/seed_range.patch", self.extending)
+        patch = (SOURCE / "examples/statistic/seed_range.patch").read_text()
+        self.assertGreater(patch.count("\n+++ "), 5)
         tried = subprocess.run(["git", "apply", "--check", "-"], cwd=SOURCE, input=patch, capture_output=True, text=True)
         self.assertEqual(tried.stderr, "")
 
     def test_every_example_is_listed(self):
         for example in (SOURCE / "examples").glob("*/*.cpp"):
-            if "LGABENCH_METHOD(" in example.read_text():
+            code = example.read_text()
+            if "LGABENCH_METHOD(" in code:
                 self.assertIn(f"`{example.stem}`", self.page)
-        methods, axes, scripts = ((SOURCE / "docs" / page).read_text()
-                                  for page in ("add-a-method-in-python.md", "add-a-perturbation.md", "python.md"))
+            else:
+                self.assertIn(f"`examples/{example.stem}`", self.extending)
+        scripts = (SOURCE / "docs/python.md").read_text()
         for example in (SOURCE / "examples/python").glob("*.py"):
             code = example.read_text()
-            page = methods if "def select(" in code else axes if "def perceive(" in code else scripts
+            page = self.page if "def select(" in code else self.extending if "def perceive(" in code else scripts
             self.assertIn(f"`examples/python/{example.name}`", page)
 
-    def test_a_perturbations_page_shows_the_examples(self):
-        page = (SOURCE / "docs/add-a-perturbation.md").read_text()
-        for file, first in (("fog/fog.cpp", "#include"), ("python/lens_drop.py", "class LensDrop")):
-            code = (SOURCE / "examples" / file).read_text()
-            shown = "".join(f"    {line}\n" if line else "\n" for line in code[code.index(first):].splitlines())
-            self.assertIn(shown, page)
+    def test_the_page_of_methods_lists_what_authors_may_write(self):
+        """All macros of options, all members of an option, and all functions that a method or its policy may have."""
+        headers = {name: (SOURCE / f"framework/lgabench/{name}.hpp").read_text()
+                   for name in ("core/method", "learning/cloning_method", "plugin/plugin")}
+        macros = re.findall(r"#define (LGABENCH_\w+_OPTIONS?)\b", headers["learning/cloning_method"] + headers["plugin/plugin"])
+        functions = re.findall(r"^  virtual [^~(]*?\b(\w+)\(", headers["core/method"].split("/// What was learned.")[1]
+                               + headers["learning/cloning_method"], re.M)
+        self.assertGreater(len(macros), 5)
+        self.assertGreater(len(functions), 12)
+        self.assertEqual([name for name in macros if f"`{name}`" not in self.page], [])
+        self.assertEqual([name for name in functions if not re.search(rf"`(?:\w+::)?{name}\(", self.page)], [])
+        for member in "values", "min", "max", "words", "needs", "framework":
+            self.assertRegex(self.page, rf"(?m)^\|[^|]*`{member}`[^|]*\|")
 
 
 class Documents(unittest.TestCase):

@@ -160,7 +160,7 @@ int check_plugin(const CheckPluginArguments& a) {
   } catch (const PluginError& e) {
     const bool in_options = std::string_view(e.what()).find(": options: ") != std::string_view::npos;
     report.problem("descriptor", e.what(),
-                   is_python_method(a.file) ? "see docs/add-a-method-in-python.md"
+                   is_python_method(a.file) ? "see docs/add-a-method.md"
                    : in_options             ? "correct the options that LGABENCH_METHOD, or the like, is given"
                                             : "build it with lgabench_add_plugin() from this very lgabench's package");
   }

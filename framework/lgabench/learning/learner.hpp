@@ -1,4 +1,4 @@
-// The interface of what is trained: a policy's network. docs/add-a-network.md walks through one.
+// The interface of what is trained: a policy's network. docs/extending.md walks through one.
 #pragma once
 #include <vector>
 
