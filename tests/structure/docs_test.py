@@ -219,6 +219,11 @@ class Documents(unittest.TestCase):
         self.assertEqual([page for page in pages if page != "README.md" and f"({page})" not in index], [])
         self.assertEqual([page for page in pages if page != "decisions.md" and f": docs/{page}\n" not in site], [])  # not for users
 
+    def test_decisions_are_few_and_numbered(self):
+        numbers = [int(n) for n in re.findall(r"^(\d+)\. ", (SOURCE / "docs/decisions.md").read_text(), re.M)]
+        self.assertEqual(numbers, list(range(1, len(numbers) + 1)))
+        self.assertLessEqual(len(numbers), 30, "one that would be undone otherwise takes another's place")
+
     def test_no_page_has_two_headings_of_one_name(self):
         wrong = []
         for page in PAGES:
