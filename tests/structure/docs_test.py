@@ -219,6 +219,16 @@ class Documents(unittest.TestCase):
         self.assertEqual([page for page in pages if page != "README.md" and f"({page})" not in index], [])
         self.assertEqual([page for page in pages if page != "decisions.md" and f": docs/{page}\n" not in site], [])  # not for users
 
+    def test_a_word_of_the_report_has_one_definition(self):
+        words = {}
+        for page in "glossary", "reading-a-report":
+            for cell in re.findall(r"^\| (.+?) \| .*\|$", (SOURCE / f"docs/{page}.md").read_text(), re.M):
+                if set(cell) - set("-: ") and cell not in ("word", "mark", "column", "verdict", "attributed to"):
+                    for word in re.sub(r"[*`]|[(].*", "", cell).strip().split(", ") if "[" not in cell else []:
+                        words.setdefault(word.strip(), []).append(page)
+        self.assertGreater(len(words), 80)
+        self.assertEqual({word: pages for word, pages in words.items() if len(pages) > 1 and word}, {})
+
     def test_decisions_are_few_and_numbered(self):
         numbers = [int(n) for n in re.findall(r"^(\d+)\. ", (SOURCE / "docs/decisions.md").read_text(), re.M)]
         self.assertEqual(numbers, list(range(1, len(numbers) + 1)))
