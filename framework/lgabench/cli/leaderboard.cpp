@@ -203,7 +203,8 @@ void add_leaderboard(CLI::App& app, int& exit) {
   verb->add_option("LINE", a->line, "vouch: the number of a line in verifications.jsonl, or `withdrawn`");
   verb->add_option("--board", a->board, "The leaderboard's directory")->capture_default_str();
   verb->add_option("--entry", a->about,
-                   "add: a file that says who submits the rows, and where their source code is (docs/leaderboard.md)");
+                   "add: a file that says who submits the rows, and where their source code is "
+                   "(docs/entering-the-leaderboard.md)");
   verb->add_option("--rows", a->rows, "add: only these rows of the run")->delimiter(',');
   CLI::Option* const cells =
       verb->add_option("--cells", a->verify.cells, "verify: how many cells to play, chosen by a nonce drawn now")
