@@ -121,6 +121,8 @@ class Cassettes(Asking):
         shown = self.ask("--json").stdout.splitlines()
         self.assertEqual(len(self.server.asked), 224, "what is on the cassette is not asked again")
         self.assertEqual([json.loads(line)["selection"]["provenance"] for line in shown], ["cassette"] * 2)
+        for line in (self.dir / "tape.jsonl").read_text().splitlines():
+            self.assert_as_schema("cassette", json.loads(line))
 
         self.server.shutdown()
         del self.environment["OPENAI_BASE_URL"], self.environment["OPENAI_API_KEY"]

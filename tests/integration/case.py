@@ -7,8 +7,12 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
+import json_schema
 
 BUILD = pathlib.Path(os.environ["LGABENCH_BUILD"])
 PROGRAM = BUILD / "bin" / "lgabench"
@@ -88,6 +92,11 @@ class Case(unittest.TestCase):
         done = subprocess.run([BUILD / "bin" / "schema_check", self.dir / run], capture_output=True, text=True,
                               timeout=60)
         self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
+
+    def assert_as_schema(self, name, document):
+        """As docs/formats/NAME.schema.json says, which knows each of its members."""
+        schema = json.loads((BUILD / f"share/lgabench/formats/{name}.schema.json").read_text())
+        self.assertEqual(json_schema.complaints(document, schema), [])
 
 
 class BesideOneRun(Case):

@@ -36,6 +36,7 @@ class CheckPlugin(Case):
         done = self.call("check-plugin", file, "--json", "--python", PYTHON, *words, expect=expect)
         report = json.loads(done.stdout)
         self.assertEqual(report["good"], expect == 0)
+        self.assert_as_schema("check_plugin", report)
         return {finding["check"]: finding for finding in report["findings"] if finding["state"] == "problem"}
 
     def test_finds_what_is_unsound_and_nothing_else(self):

@@ -539,7 +539,9 @@ class Commands(Case):
 class Page(Case):
     def data(self, run):
         page = (self.dir / run / "report.html").read_text()
-        return page, json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.S)[1])
+        data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.S)[1])
+        self.assert_as_schema("report_data", data)
+        return page, data
 
     def test_pictures_of_the_scenes_that_methods_played(self):
         self.call("run", "q1", "--scenarios", "heart,red_heart", "--methods", "lga,gcbc_dart", "--demos", "10",

@@ -68,6 +68,7 @@ class Verify(BesideOneRun):
     def test_the_sample_is_the_seeds(self):
         one, again = (json.loads(self.verify("--sample", "2", "--seed", "5", "--json", expect=0).stdout) for _ in "ab")
         self.assertEqual(one, again)
+        self.assert_as_schema("verify", one)
         self.assertEqual((len(one["cells"]), one["seed"], one["finished"]), (2, 5, 5))
 
     def test_a_changed_episode_is_found(self):
@@ -174,7 +175,9 @@ class Compare(Case):
 
     def test_compare(self):
         self.assertEqual(self.call("compare", "a", "a").stdout.count("same actions"), 6)
-        self.assertFalse(json.loads(self.call("compare", "a", "a", "--json").stdout)["regressed"])
+        compared = json.loads(self.call("compare", "a", "a", "--json").stdout)
+        self.assert_as_schema("compare", compared)
+        self.assertFalse(compared["regressed"])
         shutil.copytree(self.dir / "a", self.dir / "worse")
         self.make("a", "oracle", True)
         self.make("worse", "oracle", False)

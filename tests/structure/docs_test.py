@@ -14,6 +14,9 @@ import sys
 import tempfile
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
+import json_schema
+
 SOURCE, DOXYFILE = (pathlib.Path(p) for p in sys.argv[1:3])
 LGABENCH = DOXYFILE.parent / "bin/lgabench"
 PAGES = sorted([*SOURCE.glob("*.md"), *(SOURCE / "docs").rglob("*.md"), *(SOURCE / "examples").rglob("*.md")])
@@ -197,6 +200,30 @@ class Pages(unittest.TestCase):
         self.assertEqual([name for name in functions if not re.search(rf"`(?:\w+::)?{name}\(", self.page)], [])
         for member in "values", "min", "max", "words", "needs", "framework":
             self.assertRegex(self.page, rf"(?m)^\|[^|]*`{member}`[^|]*\|")
+
+
+class Formats(unittest.TestCase):
+    folder = SOURCE / "docs/formats"
+
+    def test_tables_of_members_are_the_schemas(self):
+        with tempfile.TemporaryDirectory() as made:
+            subprocess.run([sys.executable, SOURCE / "docs/members.py", made], check=True)
+            pages = sorted(pathlib.Path(made).iterdir())
+            self.assertEqual(pages and [page.name for page in pages], sorted(page.name for page in self.folder.glob("*-members.md")))
+            for page in pages:
+                self.assertTrue((self.folder / page.name).read_text() == page.read_text(), f"docs/members.py writes {page.name} anew")
+        written = "".join((self.folder / page.name).read_text() for page in pages)
+        self.assertEqual([schema.name for schema in self.folder.glob("*.json") if f"({schema.name})" not in written], [])
+        self.assertEqual([cell for line in written.splitlines() for cell in re.split(r"(?<!\\)\|", line) if len(cell.split()) > 50], [])
+
+    def test_files_of_the_sources_are_as_their_schemas_say(self):
+        files = [(name, SOURCE / f"results/leaderboard/{name}.json") for name in ("labels", "tracks", "vouched", "vouched_entries", "scenes")]
+        files += [("recorded_answers", file) for file in (SOURCE / "framework/lgabench/abstraction/answers").glob("*.json")]
+        self.assertGreater(len(files), 10)
+        for name, file in files:
+            schema, document = json.loads((self.folder / f"{name}.schema.json").read_text()), json.loads(file.read_text())
+            self.assertEqual(json_schema.complaints(document, schema), [], file)
+            self.assertNotEqual(json_schema.complaints({**document, "surprise": 1}, schema), [], name)
 
 
 class Documents(unittest.TestCase):
