@@ -17,7 +17,7 @@ PAGES = {
         "compare", "verify", "check_plugin"]),
     "input-members": ("Members of scenarios, suites and answers", [
         "scenario", "suite", "suite_claims", "lexicon", "recorded_answers", "cassette", "disputed", "paper_claims", "paper_methods"]),
-    "study-members": ("Members of a study's files", ["study_protocol", "participant", "study_results"]),
+    "study-members": ("Members of a study's files", ["study_protocol", "participant", "study_events", "study_results"]),
     "leaderboard-members": ("Members of the leaderboard's files", [
         "entry", "entry_meta", "cells", "verifications", "vouched", "vouched_entries", "labels", "tracks", "scenes"]),
 }

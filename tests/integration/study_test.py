@@ -154,6 +154,8 @@ class StudyServer(StudyCase):
         self.assertEqual([path.stem for path in self.server.people()], [second.id])
         self.assertEqual(self.participants(), ["p02.json"])
         self.assertEqual([e["slot"] for e in events(self.dir / "data/study.events") if e["kind"] == "withdrawn"], [0])
+        for event in [event for file in (self.dir / "data").rglob("*.events") for event in events(file)]:
+            self.assert_as_schema("study_events", event)
         self.assertEqual(self.server.ask("POST", f"/p/{first.id}/events", {"events": [{"key": "k"}]})[0], 404)
         self.server.end(signal.SIGTERM)
         self.assertEqual(self.server.process.returncode, 0)
