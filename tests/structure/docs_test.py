@@ -413,6 +413,13 @@ class Commands(unittest.TestCase):
         self.assertEqual(wrong, [])
 
 
+    def test_the_page_of_options_is_what_help_says(self):
+        with tempfile.TemporaryDirectory() as made:
+            page = pathlib.Path(made) / "options.md"
+            subprocess.run([sys.executable, SOURCE / "docs/options.py", LGABENCH, page], check=True)
+            self.assertTrue((SOURCE / "docs/options.md").read_text() == page.read_text(), "docs/options.py writes it anew")
+
+
 @unittest.skipUnless(shutil.which("doxygen"), "doxygen is not installed")
 class Doxygen(unittest.TestCase):
     def complaints(self, more=""):
