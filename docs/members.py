@@ -119,8 +119,8 @@ def escaped(text):
 
 def page(title, schemas):
     """What stood above on the page, definitions and long meanings, is linked to."""
-    text = (f"# {title}\n\n`docs/members.py` writes this page from the schemas' descriptions. `[]` stands for each element of a list, `*` for each name in "
-            "an object. [Formats](README.md) says which file is what.\n")
+    text = (f"# {title}\n\n`docs/members.py` writes this page from the schemas' descriptions.\n`[]` stands for each element of a list, `*` for each name in an "
+            "object.\n[Formats](README.md) says which file is what.\n")
     told, defined = {}, {}
     for schema in map(Schema, schemas):
         anchor = re.sub(r"[^\w\- ]", "", schema.head.lower()).replace(" ", "-")
