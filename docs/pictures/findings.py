@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Draws the small figures of docs/results.md's first table, and README's curves of clutter, from the tables of docs/results.
+"""Draws the small figures of docs/results.md's first table, README's curves of clutter,
+and LGA's curves beside the paper's, from the tables of docs/results and from results/measured.
 
 Usage: docs/pictures/findings.py [OUTPUT_DIR]
 """
+import json
 import pathlib
 import re
 import sys
@@ -88,38 +90,64 @@ CURVES = [("true mask", "Human|heat map", "#0b5cad"), ("mask of φ̂ (LGA)", "LG
 NUMBERS = ("1", "5", "20")
 
 
-def curves():
-    """Success against demonstrations, a line a row with its intervals, and what each shows beside its end."""
+def curves(numbers, series, about):
+    """Success against demonstrations: of each (label, [(rate, low, high) of each number], colour) a line with its intervals and, beside its
+    end, what it is."""
     left, right, top, bottom, width = 44, 250, 14, 214, 520
-    xs = [left + (right - left) * i / (len(NUMBERS) - 1) for i in range(len(NUMBERS))]
+    xs = [left + (right - left) * i / (len(numbers) - 1) for i in range(len(numbers))]
     y_of = lambda rate: bottom - (bottom - top) * rate
     parts = [f'<text x="{(left + right) / 2}" y="{bottom + 32}" text-anchor="middle">demonstrations</text>']
     for rate in (0, .25, .5, .75, 1):
         parts += [f'<path d="M{left} {y_of(rate):.1f}H{right}" stroke="#d7dce1"/>',
                   f'<text x="{left - 8}" y="{y_of(rate) + 4:.1f}" text-anchor="end">{rate:.2f}</text>']
-    parts += [f'<text x="{x:.1f}" y="{bottom + 16}" text-anchor="middle">{number}</text>' for x, number in zip(xs, NUMBERS)]
+    parts += [f'<text x="{x:.1f}" y="{bottom + 16}" text-anchor="middle">{number}</text>' for x, number in zip(xs, numbers)]
     ends = []
-    for label, row, color in CURVES:
-        rates = [cell("clutter", BOARD, row, number) for number in NUMBERS]
+    for label, rates, color in series:
         path = "L".join(f"{x:.1f} {y_of(rate):.1f}" for x, (rate, _, _) in zip(xs, rates))
         parts += [f'<path d="M{path}" fill="none" stroke="{color}" stroke-width="2"/>']
-        parts += [f'<path d="M{x:.1f} {y_of(low):.1f}V{y_of(high):.1f}" stroke="{color}" stroke-width="1.5"/>' for x, (_, low, high) in zip(xs, rates)]
+        parts += [f'<path d="M{x:.1f} {y_of(low):.1f}V{y_of(high):.1f}" stroke="{color}" stroke-width="1.5"/>'
+                  for x, (_, low, high) in zip(xs, rates) if low < high]
         ends.append((y_of(rates[-1][0]), f"{rates[-1][0]:.2f} {label}", color))
     at = 0
     for y, words, color in sorted(ends):
         at = max(y, at + 15)  # so that no two words stand on each other
         parts += [f'<text x="{right + 10}" y="{at + 4:.1f}" fill="{color}">{words}</text>']
     return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {bottom + 40}" width="{width}" height="{bottom + 40}" role="img" '
-            f'aria-label="Success against demonstrations, among four near misses: {"; ".join(words for _, words, _ in sorted(ends))}" '
+            f'aria-label="{about}: {"; ".join(words for _, words, _ in sorted(ends))}" '
             'font-family="Helvetica,Arial,sans-serif" font-size="12" fill="#1b1f24"><rect width="100%" height="100%" fill="#ffffff"/>'
             + "".join(parts) + "</svg>\n")
+
+
+def inputs():
+    """README's curves."""
+    series = [(label, [cell("clutter", BOARD, row, number) for number in NUMBERS], color) for label, row, color in CURVES]
+    return curves(NUMBERS, series, "Success against demonstrations, among four near misses")
+
+
+# LGA's curve in the paper, and in runs of results/measured.
+SETTINGS = [("paper_drawn", "preset paper", "#0b5cad"), ("text_drawn", "preset paper_text", "#d1495b"),
+            ("text_shuffled", "paper_text, shuffled batches", "#b26a00")]
+
+
+def fidelity():
+    """LGA in the paper's figure 3a and in the settings that were tried."""
+    results = HERE.parents[1] / "results"
+    paper = json.loads((results / "paper/reference_results.json").read_text())["figure_3a_success_vs_demonstrations"]
+    numbers = paper["demonstrations"]
+    series = [("the paper", [(mean, mean - err, mean + err) for mean, err in zip(paper["LGA"]["mean"], paper["LGA"]["err"])], "#1b1f24")]
+    for name, label, color in SETTINGS:
+        rows = json.loads((results / f"measured/runs/fidelity_{name}.json").read_text())["rows"]
+        of = {row["demonstrations"]: row for row in rows if row["method"] == "lga"}
+        series.append((label, [tuple(of[n].get(end, of[n]["success"]) for end in ("success", "low", "high")) for n in numbers], color))
+    return curves(numbers, series, "Success of LGA against demonstrations")
 
 
 def main():
     out = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else HERE)
     for name, bars in FIGURES.items():
         (out / f"finding_{name}.svg").write_text(figure(bars))
-    (out / "inputs.svg").write_text(curves())
+    (out / "inputs.svg").write_text(inputs())
+    (out / "fidelity.svg").write_text(fidelity())
 
 
 if __name__ == "__main__":

@@ -104,9 +104,9 @@ class Pages(unittest.TestCase):
         page, pictures = (SOURCE / "docs/results.md").read_text(), SOURCE / "docs/pictures"
         with tempfile.TemporaryDirectory() as made:
             subprocess.run([sys.executable, pictures / "findings.py", made], check=True)
-            curves = pathlib.Path(made) / "inputs.svg"
-            self.assertEqual((pictures / curves.name).read_text(), curves.read_text(), "docs/pictures/findings.py draws it")
-            curves.unlink()
+            for curves in (pathlib.Path(made) / name for name in ("inputs.svg", "fidelity.svg")):
+                self.assertEqual((pictures / curves.name).read_text(), curves.read_text(), "docs/pictures/findings.py draws it")
+                curves.unlink()
             figures = sorted(file.name for file in pathlib.Path(made).iterdir())
             self.assertEqual(figures, sorted(file.name for file in pictures.glob("finding_*.svg")))
             for name in figures:
