@@ -18,7 +18,7 @@ METHOD, REFERENCE = "#0b5cad", "#87919c"
 BOARD, MASK = "On the board: leaderboard", "Ablation, sees the mask of φ̂, scenes from the truth"
 PICTURE, RANDOM = "Ablation, sees the picture, scenes from the truth", "Random visible object"
 RIGHT, SEEN, NEW = "The right φ̂", "seen, 7 commands", "unseen, 7 commands"
-AREAS, NETWORK, LIGHT = "More of the board's runs", "Perturbations with", "`light_intensity`"
+AREAS, NETWORK, LIGHT = "Findings", "Perturbations with", "`light_intensity`"
 FIGURES = {
     "clutter": [("true mask", "clutter", BOARD, "Human|heat map", "5"), ("mask of φ̂, LGA", "clutter", BOARD, "LGA|heat map", "5"),
                 ("GCBC-SEG", "clutter", BOARD, "GCBC-SEG|heat map", "5"),
