@@ -7,16 +7,17 @@
 #include <chrono>
 #include <utility>
 
-#include <lgabench/abstraction/quality.hpp>
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/answers.hpp>
 #include <lgabench/cell/constant_action.hpp>
 #include <lgabench/cell/demonstrations.hpp>
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cell/hosted_axes.hpp>
+#include <lgabench/cell/instructing.hpp>
 #include <lgabench/cell/perturbed.hpp>
 #include <lgabench/cell/reference_actor.hpp>
 #include <lgabench/cell/selected_by.hpp>
+#include <lgabench/cell/selecting.hpp>
 #include <lgabench/cell/showing.hpp>
 #include <lgabench/cell/steps.hpp>
 #include <lgabench/core/environments.hpp>
@@ -76,21 +77,35 @@ std::unique_ptr<HostedMethod> hosted(const CellJob& job, const PluginInfo& plugi
   return std::make_unique<HostedMethod>(host);
 }
 
-// The cell's method, or two of which one selects; the constant action, or none for a row that learns nothing.
-std::unique_ptr<Method> make_method(const CellJob& job) {
-  const auto own = [&job](const PluginInfo& plugin, const Json& options, const char* name) {
+// The cell's method; none for a row that learns nothing.
+struct CellMethod {
+  std::unique_ptr<Method> method;
+  MethodInProcesses* processes = nullptr;  // the same object; null: no plugin's
+};
+
+// The plugin's, or two of which one selects; the constant action, or none.
+CellMethod make_method(const CellJob& job) {
+  const auto in_directory = [&job](const PluginInfo& plugin, const Json& options, const char* name) {
     fs::create_directory(job.scratch / name);
     return hosted(job, plugin, options, job.scratch / name);
   };
-  if (job.method && job.acts) {
-    return std::make_unique<SelectedBy>(own(*job.method, job.cell.method.options, "selects"),
-                                        [&job, own] { return own(*job.acts, job.cell.method.acts->options, "acts"); });
+  if (!job.method) {
+    if (job.cell.method.id == "constant_action") return {std::make_unique<ConstantAction>()};
+    return {};
   }
-  // A plugin's axis has a directory of its own: what the one writes the other does not read.
-  if (job.method && !job.axes.empty()) return own(*job.method, job.cell.method.options, "method");
-  if (job.method) return hosted(job, *job.method, job.cell.method.options, job.scratch);
-  if (job.cell.method.id == "constant_action") return std::make_unique<ConstantAction>();
-  return nullptr;
+  const Json& options = job.cell.method.options;
+  std::unique_ptr<MethodInProcesses> method;
+  if (job.acts)
+    method = std::make_unique<SelectedBy>(in_directory(*job.method, options, "selects"), [&job, in_directory] {
+      return in_directory(*job.acts, job.cell.method.acts->options, "acts");
+    });
+  else if (!job.axes
+                .empty())  // a plugin's axis has a directory of its own: what the one writes the other does not read
+    method = in_directory(*job.method, options, "method");
+  else
+    method = hosted(job, *job.method, options, job.scratch);
+  MethodInProcesses* const processes = method.get();
+  return {std::move(method), processes};
 }
 
 DemonstrationCache demonstration_cache(const CellJob& job, const Scenario& scenario) {
@@ -103,24 +118,14 @@ DemonstrationCache demonstration_cache(const CellJob& job, const Scenario& scena
           fmt::format("lgabench/{}-{}-v1{}{}", job.cell.environment, job.cell.engine, world.empty() ? "" : "/", world)};
 }
 
-// What becomes of a cell.
-enum class Course { trains, nothing_selected, reference };
-Course course_of(const Method* method, const Selected& selected, const Scenario& scenario) {
-  if (!method) return Course::reference;
-  return selected.nothing_to_learn_from(scenario) ? Course::nothing_selected : Course::trains;
-}
-
-// What is shown. Where the layout can show nothing of what was selected, the abstraction is empty.
-std::vector<Scene> training_scenes(const Scenario& scenario, const Cell& cell, const Selected& selected,
-                                   Course& course) {
-  if (course != Course::trains) return {};
+// What is shown; none where the layout can show nothing of what was selected: the abstraction is empty.
+std::vector<Scene> training_scenes(const Scenario& scenario, const Cell& cell, const Selected& selected) {
   try {
     return sample(scenario, cell.layout, selected, cell.training_seed, scenario.training_scenes(cell.demonstrations));
   } catch (const NothingToShow&) {
     Selected truth;  // throws again where the scenario is at fault
     truth.needs.targets = Needs::Targets::truth;
     sample(scenario, cell.layout, truth, cell.training_seed, scenario.training_scenes(1));
-    course = Course::nothing_selected;
     return {};
   }
 }
@@ -133,116 +138,25 @@ DemonstratedScenes shown_to(const Cell& cell, const Scenario& scenario) {
           scenario.second ? scenario.second->id : Role(), actions_of(scenario)};
 }
 
-std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell, Course course,
-                                   const Selected& selected) {
+// `empty`: of every scene, since nothing was learned.
+std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell, bool empty, const Selected& selected) {
   std::vector<TestScene> scenes;
   for (const Arm& arm : scenario.tests) {
     const Perception perception = perception_of(scenario, arm, cell.scenes_of_seed());
     for (int i = 0; i < cell.episodes; ++i) {
       Scene scene = test_scene(scenario, cell.layout, arm.id, cell.scene_seed, i, cell.scenes_of_seed());
-      const bool empty = course == Course::nothing_selected ||
-                         selected.nothing_for(command_given(scene, scenario, cell.scenes_of_seed()));
+      const bool keeps_nothing = empty || selected.nothing_for(command_given(scene, scenario, cell.scenes_of_seed()));
       const View view = view_of(scenario, scene, cell.scenes_of_seed());
-      scenes.push_back({std::move(scene), perception, empty, view});
+      scenes.push_back({std::move(scene), perception, keeps_nothing, view});
     }
   }
   return scenes;
-}
-
-// Whether there is an abstraction that a failure can be attributed to.
-bool selects(const Selected& selected) {
-  return std::all_of(selected.instructions.begin(), selected.instructions.end(),
-                     [](const Instruction& i) { return i.selection.provenance != Provenance::none; });
 }
 
 std::vector<Instruction> true_instructions(const Scenario& scenario) {
   std::vector<Instruction> all;
   for (const ScenarioCommand& command : scenario.commands) all.push_back({command.utterance, command.truth});
   return all;
-}
-
-// What the policy is told in a scene: with the errors of its arm's perturbation.
-Instruction told_in(const Scene& scene, const Scenario& scenario, const Cell& cell,
-                    const std::vector<Instruction>& instructions) {
-  const int command = command_given(scene, scenario, cell.scenes_of_seed());
-  Instruction told = instructions.at(static_cast<std::size_t>(command));
-  const Arm& arm = scenario.arm(scene.arm);
-  if (!arm.perturbation) return told;
-  for (const PerturbationAxis* axis : axes_of(scenario, *arm.perturbation)) {
-    if (!axis->selection_errors) continue;
-    const double p = axis->selection_errors(arm.perturbation->level);
-    told.selection = lgabench::with_errors(std::move(told.selection), scenario, command, SelectionErrors{p, p},
-                                           perturbation_stream(axis->id, scene, cell.scenes_of_seed()),
-                                           find_environment(scenario.environment).goal_type());
-  }
-  return told;
-}
-
-// Where an axis gives other commands: what each episode took, in the scene's own control as in every arm.
-void note_takings(const Scenario& scenario, const Cell& cell, const std::vector<TestScene>& tests,
-                  std::vector<Episode>& episodes) {
-  const PerturbationAxis* const axis = instructing_axis(scenario);
-  for (std::size_t i = 0; axis && i < episodes.size(); ++i) {
-    const Scene& scene = tests.at(i).scene;
-    const int other = axis->other(scene, scenario, perturbation_stream(axis->id, scene, cell.scenes_of_seed()));
-    episodes[i].told = command_given(scene, scenario, cell.scenes_of_seed());
-    episodes[i].took = "none";
-    for (const SceneObject& object : scene.objects)
-      if (object.instance_id == episodes[i].taken)
-        episodes[i].took = object.role == role::target                                         ? "own"
-                           : means(scenario.commands[static_cast<std::size_t>(other)], object) ? "other"
-                                                                                               : "third";
-  }
-}
-
-// Hash of what the policy's last act() read; "" where it does not tell.
-std::string read_by(const Policy& policy, const std::string& id) {
-  try {
-    const Shown shown = guarded(id, [&policy] { return policy.shown(); });
-    if (shown.empty()) return "";
-    std::string all;
-    for (const ShownPicture& one : shown.pictures)
-      all += fmt::format("{} {} {}\n", one.name, one.note, sha256(std::string(one.rgb.begin(), one.rgb.end())));
-    for (const auto& text : shown.texts) all += canonical(Json(text)) + '\n';
-    return hex(hash64(all));
-  } catch (const MethodError&) {
-    return "";
-  }
-}
-
-// Notes of each episode what the actor is given.
-Actor noting(const Actor& actor, const Scenario& scenario, const Cell& cell, const Selected& selected, Policy* policy,
-             std::vector<PerturbedEpisode>& all) {
-  return [&, actor, policy](const Environment& environment, const Scene& scene, const Observation& seen) {
-    const auto& perturbation = scenario.arm(scene.arm).perturbation;
-    const Scene control =
-        find_environment(scenario.environment)
-            .sample(scenario, {cell.layout, "test", scene.arm, cell.scene_seed, {}, cell.scenes_of_seed()},
-                    scene.index);
-    const SceneObject* const target = scene.find(role::target);
-    PerturbedEpisode one{scene.arm,
-                         scene.index,
-                         perturbation ? perturbation->axis : "",
-                         perturbation ? perturbation->level : 0,
-                         {},
-                         "",
-                         target ? target->scale : 1};
-    const Instruction told = told_in(scene, scenario, cell, selected.instructions);
-    const int command = command_given(scene, scenario, cell.scenes_of_seed());
-    one.hashes = parts_of({scene, environment.bodies(), control}, seen,
-                          policy ? &selected.instructions.at(static_cast<std::size_t>(command)) : nullptr,
-                          policy ? &told : nullptr);
-    all.push_back(one);
-    const Move move = actor(environment, scene, seen);
-    if (policy) all.back().read = read_by(*policy, cell.method.id);
-    return move;
-  };
-}
-
-std::string perturbed_text(const std::vector<PerturbedEpisode>& all) {
-  std::string lines;
-  for (const PerturbedEpisode& one : all) lines += canonical(to_json(one)) + '\n';
-  return lines;
 }
 
 using Files = std::vector<std::pair<std::string, std::string>>;  // names and bytes
@@ -253,38 +167,6 @@ std::string first_error(const std::vector<Episode>& episodes) {
   for (const Episode& episode : episodes)
     if (episode.failure == failure::method_error) return one_line(episode.error.substr(0, longest));
   return "";
-}
-
-// What was selected with the errors that the cell asks for: what is learned from and acted on.
-Selected with_errors(Selected selected, const Scenario& scenario, const Cell& cell) {
-  const std::string goal = find_environment(scenario.environment).goal_type();
-  for (std::size_t c = 0; c < selected.instructions.size(); ++c) {
-    Selection& selection = selected.instructions[c].selection;
-    selection = lgabench::with_errors(std::move(selection), scenario, static_cast<int>(c), cell.selection_errors,
-                                      cell.training_seed, goal);
-  }
-  return selected;
-}
-
-// `first`: what select() returned, from which the targets were drawn; `right`: what was selected in the end, without
-// the cell's errors.
-std::string selection_text(const Scenario& scenario, const Cell& cell, const Selected& selected,
-                           const std::vector<Instruction>& first, const std::vector<Instruction>& right) {
-  const Json shown = find_environment(scenario.environment)
-                         .shown_members(scenario, {cell.layout, "train", "train", cell.training_seed});
-  Json commands = Json::array();
-  for (std::size_t c = 0; c < scenario.commands.size(); ++c) {
-    const auto& [utterance, selection] = selected.instructions[c];
-    commands.push_back({{"utterance", utterance},
-                        {"selection", to_json(selection)},
-                        {"quality", to_json(quality(selection, scenario.commands[c].truth))}});
-    if (Json before = distribution_json(first[c].selection); before != distribution_json(right[c].selection))
-      commands.back()["before_revision"] = std::move(before);
-    if (!cell.selection_errors.none() && selection.provenance != Provenance::none)
-      commands.back()["before_errors"] = distribution_json(right[c].selection);
-    if (!shown.is_null()) commands.back()["shown"] = shown.at(c);
-  }
-  return canonical({{"commands", commands}}) + '\n';
 }
 
 std::string episodes_text(const std::vector<Episode>& episodes) {
@@ -345,7 +227,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
 
   phases.begin("load");
   host_axes(scenario, job);
-  const std::unique_ptr<Method> method = make_method(job);
+  const auto [method, processes] = make_method(job);
 
   // 1 select: which features does each command make matter?
   phases.begin("select");
@@ -353,16 +235,14 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   TrainingLines training(count);
   Services services{*answers.lm, *answers.human,       cell.method.options, cell.training_seed,
                     training,    actions_of(scenario), answers.truth};
-  Selected selected = select(method.get(), id, scenario, services);
-  for (const Instruction& instruction : selected.instructions) expect_usable(instruction.selection, scenario);
-  const std::vector<Instruction> first = selected.instructions;
-  std::vector<Instruction> right = first;  // without the cell's errors, which are made in what is selected last
-  if (!selected.needs.revise) selected = with_errors(std::move(selected), scenario, cell);
-  Course course = course_of(method.get(), selected, scenario);
+  Selecting selecting(method.get(), scenario, cell, services);
+  const Selected& selected = selecting.current();
 
   // 2 sample: what will be shown, with targets from the Selection or from the truth?
   phases.begin("sample");
-  const std::vector<Scene> scenes = training_scenes(scenario, cell, selected, course);
+  std::vector<Scene> scenes;
+  if (method && !selecting.nothing_to_learn_from()) scenes = training_scenes(scenario, cell, selected);
+  const bool shows = !scenes.empty();
 
   // 3 demonstrate: the oracle shows it.
   phases.begin("demonstrate");
@@ -376,50 +256,45 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   // 4 learn: from observations and labels to a policy.
   phases.begin("learn");
   std::unique_ptr<Policy> policy;
-  if (course == Course::trains) {
-    revise(*method, id, scenario, demonstrations, scenes, services, selected);
-    if (selected.needs.revise) {
-      right = selected.instructions;
-      selected = with_errors(std::move(selected), scenario, cell);
-      demonstrations = instructed(std::move(demonstrations), scenes, selected);
-      course = course_of(method.get(), selected, scenario);
-    }
-  }
-  if (course == Course::trains) {
-    policy = learn(*method, id, demonstrations, services, selected);
-  }
+  if (shows) selecting.revise(*method, demonstrations, scenes, services);
+  if (shows && !selecting.nothing_to_learn_from()) policy = selecting.learn(*method, demonstrations, services);
   demonstrations.clear();
 
   // 5 evaluate: the same test scenes for everyone.
   phases.begin("evaluate");
-  const std::vector<TestScene> tests = test_scenes(scenario, cell, course, selected);
+  const std::vector<TestScene> tests = test_scenes(scenario, cell, method && !policy, selected);
   const bool perturbs = cell.perturbs();
-  const auto told = [&](const Scene& scene) { return told_in(scene, scenario, cell, selected.instructions); };
-  const Actor actor = policy && perturbs            ? policy_actor(*policy, told, id)
-                      : policy                      ? policy_actor(*policy, selected.instructions, id)
-                      : course == Course::reference ? reference_actor(id, shown_to(cell, scenario))
-                                                    : Actor();
+  Actor actor;
+  if (policy && perturbs)
+    actor = policy_actor(
+        *policy, [&](const Scene& scene) { return instruction_in(scene, scenario, cell, selected.instructions); }, id);
+  else if (policy)
+    actor = policy_actor(*policy, selected.instructions, id);
+  else if (!method)
+    actor = reference_actor(id, shown_to(cell, scenario));
   std::optional<Showing> showing;
   if (policy) showing.emplace(*policy, id);
   std::vector<PerturbedEpisode> perturbed;
-  const Actor noted = perturbs && actor ? noting(actor, scenario, cell, selected, policy.get(), perturbed) : actor;
-  std::vector<Episode> episodes = evaluate(*environment, tests, noted, [&](int n) {
+  const Actor recorded = perturbs && actor
+                             ? recording_actor(actor, scenario, cell, selected.instructions, policy.get(), perturbed)
+                             : actor;
+  std::vector<Episode> episodes = evaluate(*environment, tests, recorded, [&](int n) {
     count(n);
     if (showing) showing->played(tests[static_cast<std::size_t>(n) - 1]);
   });
   expect_declared(perturbed, episodes, policy != nullptr, axes_in(scenario));
   note_takings(scenario, cell, tests, episodes);
-  auto* const hosted = dynamic_cast<MethodInProcesses*>(method.get());
-  const Files of_method = hosted ? hosted->files() : Files();  // from now on the method may be told the truth
+  const Files of_method = processes ? processes->files() : Files();  // from now on the method may be told the truth
   const std::string kept = policy_text(job, policy.get());
   const std::vector<Instruction> truth = true_instructions(scenario);
   const Actor with_truth = policy ? policy_actor(*policy, truth, id) : Actor();
-  if (job.attributed && selects(selected)) attribute_failures(*environment, tests, actor, with_truth, episodes);
-  if (hosted) guarded(id, [&] { hosted->end(); });
+  if (job.attributed && selecting.is_attributable())
+    attribute_failures(*environment, tests, actor, with_truth, episodes);
+  if (processes) guarded(id, [processes = processes] { processes->end(); });
 
   // 6 record: no clock but in timing.json.
   Files files{{cell_file::configuration, canonical(to_json(cell)) + '\n'},
-              {cell_file::selections, selection_text(scenario, cell, selected, first, right)},
+              {cell_file::selections, selecting.text()},
               {cell_file::training, training.lines},
               {cell_file::episodes, episodes_text(episodes)},
               {cell_file::timing, canonical(phases.seconds()) + '\n'}};

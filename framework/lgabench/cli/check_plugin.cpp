@@ -102,7 +102,7 @@ std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
 
   const Scratch scratch("check");
   const PoolOptions pool{1, a.timeout_s, 0};
-  const PluginInfo& engine = plugin.kind == "engine" ? plugin : usual_engine(catalogue);
+  const PluginInfo& engine = plugin.kind == "engine" ? plugin : default_engine(catalogue);
   const Json options = options_of(plugin, a.settings);
   std::array<fs::path, 2> reports{scratch.path / "first.json", scratch.path / "second.json"};
   std::array<WorkerEnd, 2> ends;

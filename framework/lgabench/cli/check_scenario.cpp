@@ -139,7 +139,7 @@ int check_scenario(const CheckScenarioArguments& a) {
                             : is_file ? in_suite(scenario_of(a.file).id)
                                       : in_suite(a.file);
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
-  const PluginInfo& engine = a.engine.empty() ? usual_engine(catalogue) : catalogue.find("engine", a.engine);
+  const PluginInfo& engine = a.engine.empty() ? default_engine(catalogue) : catalogue.find("engine", a.engine);
   const auto environment = make_environment(scenario, load_engine(engine));
   CheckReport report;
   report.ok("file", fmt::format("{} in {}, {} command(s), {} arm(s)", scenario.task, scenario.environment,

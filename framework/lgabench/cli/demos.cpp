@@ -50,7 +50,7 @@ void write(const DemosArguments& a) {
     throw InputError("demos: expected SCENARIO and --out FILE.hdf5, or --inspect FILE");
   const Scenario scenario = load_scenario(a.scenario);
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
-  const PluginInfo& engine = a.engine.empty() ? usual_engine(catalogue) : catalogue.find("engine", a.engine);
+  const PluginInfo& engine = a.engine.empty() ? default_engine(catalogue) : catalogue.find("engine", a.engine);
   const auto environment = make_environment(scenario, load_engine(engine));
   const std::string layout = a.layout.empty() ? layouts_of(scenario).front() : a.layout;
   std::vector<Scene> scenes;

@@ -192,7 +192,7 @@ void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const 
     left_out += fmt::format("hypotheses: {}\n", one_line(e.what()));
   }
   Groups families;
-  for (const auto& [name, scenarios] : suite.groups.items()) families.emplace_back(name, scenarios);
+  for (const auto& [name, scenarios] : suite.groups) families.emplace_back(name, scenarios);
   // Those of the suite, or the arms where commands name them, then all.
   using InGroup = std::function<bool(const ScoredCommand&)>;
   std::vector<std::pair<std::string, InGroup>> groups;

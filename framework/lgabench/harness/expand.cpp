@@ -133,18 +133,18 @@ std::vector<std::string> suite_scenario_ids(const Suite& suite, const Design& de
   if (suite.variants.empty()) return design.scenarios;
   std::vector<std::string> ids;
   for (const std::string& id : design.scenarios)
-    for (const auto& [variant, ignored] : suite.variants.items()) ids.push_back(fmt::format("{}_{}", id, variant));
+    for (const auto& variant : suite.variants) ids.push_back(fmt::format("{}_{}", id, variant.first));
   return ids;
 }
 
 Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, const Design* of) {
   const Design& design = of ? *of : suite.design;
   std::string base = id, variant;
-  for (const auto& [name, ignored] : suite.variants.items()) {
-    const std::string end = "_" + name;
+  for (const auto& named : suite.variants) {
+    const std::string end = "_" + named.first;
     if (id.size() <= end.size() || id.compare(id.size() - end.size(), end.size(), end) != 0) continue;
     base = id.substr(0, id.size() - end.size());
-    variant = name;
+    variant = named.first;
   }
   const Scenario scenario = load_scenario(base, truth);
   if (scenario.environment != suite.environment)
@@ -152,32 +152,28 @@ Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, 
                                  scenario.environment, suite.environment));
   Json json = scenario.json;
   if (!suite.train.empty()) json["train"].update(suite.train);
-  const Json scenes = suite.scenes.value(base, Json::object());
+  const Json scenes = suite.scenes.count(base) ? suite.scenes.at(base) : Json::object();
   if (!scenes.empty()) json["train"].update(scenes);
-  if (suite.paraphrases.contains(base)) add_wordings(suite, base, json);
-  if (suite.answers.contains(base)) json["answers"] = {{"recorded", suite.answers[base]}};
-  const Json changes = variant.empty() ? Json::object() : suite.variants[variant];
-  if (changes.contains("train")) json["train"].update(changes["train"]);
-  if (changes.contains("commands"))
-    json["commands"] = first_commands(json["commands"], changes["commands"].get<std::size_t>());
+  if (suite.paraphrases.count(base)) add_wordings(suite, base, json);
+  if (suite.answers.count(base)) json["answers"] = {{"recorded", suite.answers.at(base)}};
+  const SuiteVariant changes = variant.empty() ? SuiteVariant() : suite.variants.at(variant);
+  if (!changes.train.empty()) json["train"].update(changes.train);
+  if (changes.commands) json["commands"] = first_commands(json["commands"], *changes.commands);
   const Json first = json["tests"].front();
   if (suite.only_arms) json["tests"] = Json::array();
-  for (Json arm : changes.value("arms", suite.arms)) {
-    const auto except = arm.value("except", std::vector<std::string>());
-    if (has(except, base) || has(except, id) || (!design.arms.empty() && !has(design.arms, arm.at("arm")))) continue;
-    arm.erase("except");
+  for (const SuiteArm& arm : changes.arms.value_or(suite.arms)) {
+    if (has(arm.except, base) || has(arm.except, id) || (!design.arms.empty() && !has(design.arms, arm.id))) continue;
     json["tests"].push_back(first);
-    json["tests"].back().update(arm);
+    json["tests"].back().update(arm.members);
     json["tests"].back().update(scenes);
-    if (suite.near_miss.contains(base) && arm.value("near_miss", Json()) == Json(true))
-      json["tests"].back()["near_miss"] = suite.near_miss[base];
+    if (suite.near_miss.count(base) && arm.members.value("near_miss", Json()) == Json(true))
+      json["tests"].back()["near_miss"] = suite.near_miss.at(base);
   }
   const Json control = json["tests"].front();
-  for (const Json& axis : design.perturbations) {
-    const Json except = axis.value("except", Json::array());
-    if (std::find(except.begin(), except.end(), base) != except.end()) continue;
-    for (const int level : axis["levels"]) {
-      const Perturbation one{axis["axis"], level};
+  for (const DesignAxis& axis : design.perturbations) {
+    if (axis.except && has(*axis.except, base)) continue;
+    for (const int level : axis.levels) {
+      const Perturbation one{axis.axis, level};
       json["tests"].push_back(control);
       json["tests"].back().update({{"arm", arm_of(one)}, {"perturbation", {{one.axis, one.level}}}});
     }

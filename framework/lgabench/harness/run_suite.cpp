@@ -1,68 +1,27 @@
 #include <lgabench/harness/run_suite.hpp>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <sys/utsname.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <cmath>
-#include <ctime>
-#include <fstream>
 #include <random>
 #include <set>
-#include <thread>
 
 #include <lgabench/core/colour.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/core/version.hpp>
+#include <lgabench/harness/cell_plugins.hpp>
 #include <lgabench/harness/progress.hpp>
+#include <lgabench/harness/run_description.hpp>
+#include <lgabench/harness/settle.hpp>
 #include <lgabench/host/confine.hpp>
 #include <lgabench/record/layout.hpp>
 
 namespace lgabench {
 namespace {
-
-const PluginInfo* method_plugin(const Cell& cell, const Catalogue& catalogue) {
-  return cell.method.is_reference() ? nullptr : &catalogue.find("method", cell.method.id);
-}
-
-const PluginInfo* acting_plugin(const Cell& cell, const Catalogue& catalogue) {
-  return cell.method.acts ? &catalogue.find("method", cell.method.acts->id) : nullptr;
-}
-
-std::vector<PluginInfo> axis_plugins(const Cell& cell, const Catalogue& catalogue) {
-  std::vector<PluginInfo> plugins;
-  for (const std::string& id : cell.plugin_axes()) plugins.push_back(catalogue.find("perturbation", id));
-  return plugins;
-}
-
-Json build_of(const Cell& cell, const Catalogue& catalogue) {
-  Json build = build_hashes(catalogue.find("engine", cell.engine), method_plugin(cell, catalogue), cell.needs_axes());
-  if (const PluginInfo* acts = acting_plugin(cell, catalogue)) build["acts"] = acts->sha256;
-  for (const PluginInfo& axis : axis_plugins(cell, catalogue)) add_axis(build, axis);
-  return build;
-}
-
-std::string processor() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);)
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
-  return "unknown";
-}
-
-Json answers_json(const std::vector<AnswerFile>& files) {
-  Json answers = Json::array();
-  for (const AnswerFile& file : files) {
-    answers.push_back(file.about);
-    answers.back().update({{"file", file.path.string()}, {"name", file.name}});
-  }
-  return answers;
-}
 
 // Cells that others will compute again are played in another order each time: who passes anything on acts otherwise.
 std::optional<std::uint32_t> order_of(const RunPlan& plan) {
@@ -90,75 +49,6 @@ void keep_replies_of(const RunPlan& plan, const RunDirectory& directory) {
   } catch (const InputError& e) {
     to_stderr("the language model's replies are not kept with the run: {}\n", one_line(e.what()));
   }
-}
-
-// The part of the run that is computed now; none where that is all of it.
-std::optional<RunRecord::Shard> shard_of(const RunPlan& plan) {
-  if (plan.shard.count == 1) return std::nullopt;
-  return RunRecord::Shard{plan.shard.index, plan.shard.count, cells_of(plan.cells, plan.shard).size()};
-}
-
-Json machine() {
-  utsname system{};
-  ::uname(&system);
-  return {{"processor", processor()},
-          {"cores", std::thread::hardware_concurrency()},
-          {"memory_gib", std::round(machine_bytes() / (1 << 30) * 10) / 10},
-          {"system", fmt::format("{} {}", system.sysname, system.release)}};
-}
-
-RunRecord record_of(const RunPlan& plan, const Catalogue& catalogue) {
-  RunRecord run;
-  std::set<std::string> named;
-  const auto name = [&](const PluginInfo& info) {
-    if (!named.insert(info.kind + info.id).second) return;
-    run.plugins.push_back({info.kind, info.id, info.version, info.sha256, info.asks});
-  };
-  for (const Cell& cell : plan.cells) {
-    run.cells.push_back(key(cell));
-    name(catalogue.find("engine", cell.engine));
-    for (const PluginInfo& axis : axis_plugins(cell, catalogue)) name(axis);
-    if (const PluginInfo* method = method_plugin(cell, catalogue)) {
-      name(*method);
-      if (const PluginInfo* acts = acting_plugin(cell, catalogue)) name(*acts);
-      for (const auto& [option, value] : cell.method.options.items()) {
-        const auto known = method->options.find(option);  // none: of a plugin that had it when its run was recorded
-        if (known == method->options.end() || value != known->at("default"))
-          run.settings[cell.method.name][option] = value;
-      }
-    }
-    run.build.update(build_of(cell, catalogue));
-    for (const std::string& id : cell.plugin_axes()) run.build.erase(axis_in_build(id));
-  }
-  for (const char* plugin : {"engine", "method", "python", "acts"}) run.build.erase(plugin);
-  run.suite = plan.request.at("suite");
-  run.preset = plan.request.at("preset");
-  run.smoke = plan.cells.front().smoke;
-  run.request = plan.request;
-  run.about = plan.about;
-  run.claims = plan.claims;
-  run.version = LGABENCH_VERSION;
-  run.program = plan.program;
-  run.command = plan.command;
-  run.confinement = plan.confined ? confinement_text() : unconfined_run;
-  run.answers = answers_json(plan.answers);
-  run.started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
-  run.machine = machine();
-  run.shard = shard_of(plan);
-  return run;
-}
-
-// Status of a cell whose worker left none.
-CellStatus failure(const WorkerEnd& end, double timeout_s, const fs::path& log, const Json& build) {
-  const auto [reason, fault] = why_it_ended(end, timeout_s);
-  CellStatus status;
-  status.failed = true;
-  status.reason = reason;
-  status.fault = fault;
-  status.signal = end.signal ? end.signal : end.complaint ? end.complaint->signal : 0;
-  status.log_tail = log_tail(log);
-  status.build = build;
-  return status;
 }
 
 void add_phases(const fs::path& cell, TimeSpent& time) {
@@ -217,55 +107,6 @@ bool ask_for(const std::vector<const Cell*>& cells, const RunPlan& plan, const C
   return questions.open == 0 || ask_beforehand({asked_model_of(plan), *plan.live, scenarios}, questions, plan.quiet);
 }
 
-// What a plugin printed without end is not kept whole. Called where nobody writes any more.
-void cut_log(const fs::path& log) {
-  constexpr std::size_t most = std::size_t{1} << 20;  // of its begin, and of its end
-  if (fs::symlink_status(log).type() != fs::file_type::regular) {
-    fs::remove_all(log);
-    write_file(log, "");
-  }
-  if (fs::file_size(log) <= 2 * most) return;
-  const std::string all = read_file(log, Links::refused);
-  write_file(log, fmt::format("{}\n[{} bytes left out]\n{}", all.substr(0, most), all.size() - 2 * most,
-                              all.substr(all.size() - most)));
-}
-
-// Accepts the cell if its files match the worker's checksums; otherwise leaves only status.json and the log. Returns
-// the reason of a failure, or "".
-std::string settle(const Cell& cell, const WorkerEnd& end, const fs::path& scratch, const Json& build,
-                   double timeout_s) {
-  cut_log(scratch / cell_file::log);
-  const bool ended_well = end.exit_code == 0 && end.signal == 0;
-  const CellState state = ended_well && has_status(scratch) ? cell_state(scratch, key(cell), build) : CellState();
-  if (state.complete) return "";
-  CellStatus status = failure(end, timeout_s, scratch / cell_file::log, build);
-  if (!state.why.empty()) status.reason = state.why;  // a plugin touched what was written
-  for (const auto& entry : fs::directory_iterator(scratch))
-    if (entry.path().filename() != cell_file::log) fs::remove_all(entry.path());  // parts of a result are none
-  write_file(scratch / cell_file::configuration, canonical(to_json(cell)) + '\n');
-  write_cell_status(scratch, status);
-  return status.reason;
-}
-
-// A cell that could not be put in its place as it ended: without its files, or with none at all on a full disk.
-void record_failure(const RunDirectory& directory, const Cell& cell, const std::string& reason,
-                    const std::string& fault, const Json& build) {
-  CellStatus status;
-  status.failed = true;
-  status.reason = reason;
-  status.fault = fault;
-  status.build = build;
-  try {
-    const fs::path scratch = directory.scratch(key(cell));
-    write_file(scratch / cell_file::log, "");
-    write_file(scratch / cell_file::configuration, canonical(to_json(cell)) + '\n');
-    write_cell_status(scratch, status);
-    directory.keep(key(cell));
-  } catch (const std::exception& e) {
-    to_stderr("{}: {}\n", cell.title(), one_line(e.what()));
-  }
-}
-
 // What the disks lack, said before cells are computed for them.
 void warn_of_disks(const RunPlan& plan, double run_bytes) {
   std::error_code error;
@@ -279,6 +120,155 @@ void warn_of_disks(const RunPlan& plan, double run_bytes) {
     to_stderr("{}: cannot be written: {}; each cell makes its demonstrations again\n", plan.cache.string(),
               error.message());
 }
+
+// The cells that a run lacks, from the plan to the directory.
+class Run {
+ public:
+  Run(const RunPlan& plan, const Catalogue& catalogue)
+      : plan_(plan),
+        catalogue_(catalogue),
+        was_unconfined_(plan.existing != Existing::fresh && is_unconfined(plan.out)),
+        directory_(plan.out, describe(plan, catalogue), plan.existing),
+        state_(prepare()),
+        schedule_(state_.missing, order_of(plan), plan.costs),
+        places_(state_.missing.size()) {
+    outcome_.reused = state_.complete.size();
+    for (const Cell* cell : state_.complete) schedule_.learn(*cell, recorded_seconds(directory_.cell(key(*cell))));
+  }
+
+  RunOutcome play() {
+    announce();
+    const bool asks = plan_.live && plan_.live->asks;
+    outcome_.interrupted = (asks && !ask_for(state_.missing, plan_, catalogue_)) || !compute();
+    if (asks) keep_replies_of(plan_, directory_);
+    if (!outcome_.interrupted) confirm();
+    return std::move(outcome_);
+  }
+
+ private:
+  // Of the i-th cell that is computed.
+  struct Place {
+    const Cell* cell = nullptr;
+    fs::path scratch, host;  // of what the worker writes, and of what the method's process does
+  };
+
+  // What run.json and the kept answers say of this part of the run.
+  ShardState prepare() {
+    directory_.amend([&](RunRecord& run) {
+      if (was_unconfined_) run.confinement = unconfined_run;
+      if (run.shard != shard_of(plan_)) run.shard.reset();  // the directory holds another part as well
+    });
+    keep_answers(plan_.answers, plan_.out);
+    if (plan_.live && plan_.live->asks) expect_replies_of(plan_);
+    ShardState state = shard_state(plan_, catalogue_, directory_);
+    if (!plan_.confined && !state.missing.empty())
+      directory_.amend([](RunRecord& run) { run.confinement = unconfined_run; });
+    return state;
+  }
+
+  // How long it should take, and what the disks lack.
+  void announce() const {
+    if (state_.missing.empty()) return;
+    constexpr double long_s = 600;
+    const Forecast expected = forecast(state_.complete, state_.missing, schedule_.costs(), plan_.pool.jobs);
+    const bool is_long = expected.wall_s > long_s;
+    if (!plan_.quiet)
+      put(stderr,
+          painted(stderr, is_long ? Colour::yellow : Colour::bold, expected.text(plan_.pool.jobs, plan_.purpose)) +
+              (is_long && plan_.purpose.empty() ? "; --dry-run shows of what\n" : "\n"));
+    if (plan_.purpose.empty()) warn_of_disks(plan_, expected.run_bytes);
+  }
+
+  // @returns false if a signal came.
+  bool compute() {
+    progress_.emplace(
+        state_.missing.size(), plan_.pool.jobs, [this] { return schedule_.left_s(); }, plan_.quiet);
+    PoolEvents events;
+    events.started = [this](std::size_t i) {
+      progress_->started(i, places_[i].cell->title(), schedule_.costs().expected_seconds(*places_[i].cell));
+    };
+    events.progress = [this](std::size_t i, const std::string& phase, long long n) { progress_->phase(i, phase, n); };
+    events.tick = [this] { progress_->tick(); };
+    events.ended = [this](std::size_t i, const WorkerEnd& end) { ended(i, end); };
+    const auto start = std::chrono::steady_clock::now();
+    const bool done = run_workers(
+        state_.missing.size(), [this](std::size_t i) { return task(i); }, plan_.pool, events);
+    outcome_.time.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return done;
+  }
+
+  WorkerTask task(std::size_t i) {
+    Place& place = places_[i];
+    place.cell = schedule_.next();
+    place.host = hosts_.path / std::to_string(i);
+    place.scratch = directory_.scratch(key(*place.cell));
+    fs::create_directory(place.host);
+    return {to_json(cell_job(plan_, catalogue_, *place.cell, place.scratch, plan_.out / "answers", place.host)),
+            place.scratch / cell_file::log};
+  }
+
+  void ended(std::size_t i, const WorkerEnd& end) {
+    const Place& place = places_[i];
+    const Cell& cell = *place.cell;
+    constexpr int refused = 4;  // the worker's exit status for a plugin that cannot be loaded
+    const Json build = build_of(cell, catalogue_);
+    std::string reason;
+    // What a plugin did to the directory, or a full disk, ends this cell and no other.
+    try {
+      if (place.scratch.empty()) throw InputError(why_it_ended(end, plan_.pool.timeout_s).reason);
+      reason = settle(cell, end, place.scratch, build, plan_.pool.timeout_s);
+      directory_.keep(key(cell));
+      directory_.sync();
+      if (reason.empty()) add_phases(directory_.cell(key(cell)), outcome_.time);
+    } catch (const InputError& e) {
+      record_failure(directory_, cell, reason = e.what(), "host", build);
+    } catch (const std::exception& e) {
+      record_failure(directory_, cell, reason = e.what(), "plugin", build);
+    }
+    remove_tree(place.host);
+    outcome_.time.workers_s += end.seconds;
+    if (reason.empty()) {
+      ++outcome_.computed;
+      schedule_.learn(cell, end.seconds);
+    } else {
+      outcome_.failed.push_back({cell.title(), reason, directory_.cell(key(cell)) / cell_file::log});
+      outcome_.plugin_refused |= end.exit_code == refused && end.complaint && end.complaint->refused;
+      failed_.insert(key(cell));
+    }
+    progress_->ended(i, reason.empty() ? "" : "failed: " + reason);
+  }
+
+  // The last word is the disk's: a cell that was there, or was computed, and is not as it was kept has failed.
+  void confirm() {
+    for (const Cell* cell : state_.complete) expect_there(*cell, outcome_.reused);
+    for (const Place& place : places_)
+      if (failed_.count(key(*place.cell)) == 0) expect_there(*place.cell, outcome_.computed);
+    std::set<std::string> ours;
+    for (const Cell* cell : cells_of(plan_.cells, plan_.shard)) ours.insert(key(*cell));
+    for (const Cell& cell : plan_.cells)
+      outcome_.elsewhere += ours.count(key(cell)) == 0 && !has_status(directory_.cell(key(cell)));
+  }
+
+  void expect_there(const Cell& cell, std::size_t& count) {
+    const CellState state = directory_.state(key(cell), build_of(cell, catalogue_));
+    if (state.complete) return;
+    --count;
+    outcome_.failed.push_back({cell.title(), "was kept and is gone: " + (state.why.empty() ? "no files" : state.why),
+                               directory_.cell(key(cell)) / cell_file::log});
+  }
+
+  const RunPlan& plan_;
+  const Catalogue& catalogue_;
+  const bool was_unconfined_;
+  const RunDirectory directory_;
+  const ShardState state_;
+  Schedule schedule_;
+  std::optional<Progress> progress_;  // once cells are computed
+  std::vector<Place> places_;
+  const Scratch hosts_{"hosts"};  // not below the run's directory: a method does not learn where that is
+  std::set<std::string> failed_;  // keys
+  RunOutcome outcome_;
+};
 
 }  // namespace
 
@@ -345,112 +335,6 @@ CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& ce
   return job;
 }
 
-RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
-  const bool unconfined = plan.existing != Existing::fresh && is_unconfined(plan.out);
-  const RunDirectory directory(plan.out, record_of(plan, catalogue), plan.existing);
-  directory.amend([&](RunRecord& run) {
-    if (unconfined) run.confinement = unconfined_run;
-    if (run.shard != shard_of(plan)) run.shard.reset();  // the directory holds another part as well
-  });
-  keep_answers(plan.answers, plan.out);
-  const bool asks = plan.live && plan.live->asks;
-  if (asks) expect_replies_of(plan);
-  const auto [complete, missing] = shard_state(plan, catalogue, directory);
-  if (!plan.confined && !missing.empty()) directory.amend([](RunRecord& run) { run.confinement = unconfined_run; });
-  RunOutcome outcome;
-  outcome.reused = complete.size();
-  Schedule schedule(missing, order_of(plan), plan.costs);
-  for (const Cell* cell : complete) schedule.learn(*cell, recorded_seconds(directory.cell(key(*cell))));
-
-  const Forecast expected = forecast(complete, missing, schedule.costs(), plan.pool.jobs);
-  if (!missing.empty()) {
-    constexpr double long_s = 600;
-    const bool is_long = expected.wall_s > long_s;
-    if (!plan.quiet)
-      put(stderr,
-          painted(stderr, is_long ? Colour::yellow : Colour::bold, expected.text(plan.pool.jobs, plan.purpose)) +
-              (is_long && plan.purpose.empty() ? "; --dry-run shows of what\n" : "\n"));
-    if (plan.purpose.empty()) warn_of_disks(plan, expected.run_bytes);
-  }
-
-  if (asks && !ask_for(missing, plan, catalogue)) {
-    keep_replies_of(plan, directory);
-    outcome.interrupted = true;
-    return outcome;
-  }
-
-  Progress progress(
-      missing.size(), plan.pool.jobs, [&schedule] { return schedule.left_s(); }, plan.quiet);
-  std::vector<const Cell*> played(missing.size());
-  std::vector<fs::path> scratch(missing.size());
-  const Scratch hosts("hosts");  // not below the run's directory: a method does not learn where that is
-  const auto make = [&](std::size_t i) {
-    played[i] = schedule.next();
-    const Cell& cell = *played[i];
-    scratch[i] = directory.scratch(key(cell));
-    const fs::path own = hosts.path / std::to_string(i);
-    fs::create_directory(own);
-    return WorkerTask{to_json(cell_job(plan, catalogue, cell, scratch[i], plan.out / "answers", own)),
-                      scratch[i] / cell_file::log};
-  };
-  std::set<std::string> failed;
-  PoolEvents events;
-  events.started = [&](std::size_t i) {
-    progress.started(i, played[i]->title(), schedule.costs().expected_seconds(*played[i]));
-  };
-  events.progress = [&](std::size_t i, const std::string& phase, long long n) { progress.phase(i, phase, n); };
-  events.tick = [&] { progress.tick(); };
-  events.ended = [&](std::size_t i, const WorkerEnd& end) {
-    const Cell& cell = *played[i];
-    constexpr int refused = 4;  // the worker's exit status for a plugin that cannot be loaded
-    const Json build = build_of(cell, catalogue);
-    std::string reason;
-    // What a plugin did to the directory, or a full disk, ends this cell and no other.
-    try {
-      if (scratch[i].empty()) throw InputError(why_it_ended(end, plan.pool.timeout_s).reason);
-      reason = settle(cell, end, scratch[i], build, plan.pool.timeout_s);
-      directory.keep(key(cell));
-      directory.sync();
-      if (reason.empty()) add_phases(directory.cell(key(cell)), outcome.time);
-    } catch (const InputError& e) {
-      record_failure(directory, cell, reason = e.what(), "host", build);
-    } catch (const std::exception& e) {
-      record_failure(directory, cell, reason = e.what(), "plugin", build);
-    }
-    remove_tree(hosts.path / std::to_string(i));
-    outcome.time.workers_s += end.seconds;
-    const fs::path kept = directory.cell(key(cell));
-    if (reason.empty()) {
-      ++outcome.computed;
-      schedule.learn(cell, end.seconds);
-    } else {
-      outcome.failed.push_back({cell.title(), reason, kept / cell_file::log});
-      outcome.plugin_refused |= end.exit_code == refused && end.complaint && end.complaint->refused;
-      failed.insert(key(cell));
-    }
-    progress.ended(i, reason.empty() ? "" : "failed: " + reason);
-  };
-  const auto start = std::chrono::steady_clock::now();
-  outcome.interrupted = !run_workers(missing.size(), make, plan.pool, events);
-  outcome.time.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (asks) keep_replies_of(plan, directory);
-  if (outcome.interrupted) return outcome;
-  // The last word is the disk's: a cell that was there, or was computed, and is not as it was kept has failed.
-  const auto expect_there = [&](const Cell& cell, std::size_t& count) {
-    const CellState state = directory.state(key(cell), build_of(cell, catalogue));
-    if (state.complete) return;
-    --count;
-    outcome.failed.push_back({cell.title(), "was kept and is gone: " + (state.why.empty() ? "no files" : state.why),
-                              directory.cell(key(cell)) / cell_file::log});
-  };
-  for (const Cell* cell : complete) expect_there(*cell, outcome.reused);
-  for (const Cell* cell : played)
-    if (failed.count(key(*cell)) == 0) expect_there(*cell, outcome.computed);
-  std::set<std::string> ours;
-  for (const Cell* cell : cells_of(plan.cells, plan.shard)) ours.insert(key(*cell));
-  for (const Cell& cell : plan.cells)
-    outcome.elsewhere += ours.count(key(cell)) == 0 && !has_status(directory.cell(key(cell)));
-  return outcome;
-}
+RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) { return Run(plan, catalogue).play(); }
 
 }  // namespace lgabench

@@ -51,7 +51,7 @@ Json scored(const Installed& installed, const std::string& asked, Answerer answe
       if (is_in(id)) total += one;
     if (total.commands > 0) groups[group] = to_json(total);
   };
-  for (const auto& [group, ids] : installed.suite.groups.items())
+  for (const auto& [group, ids] : installed.suite.groups)
     sum(group, [&ids = ids](const std::string& id) { return std::find(ids.begin(), ids.end(), id) != ids.end(); });
   sum(all, [](const std::string&) { return true; });
   for (const auto& [id, one] : by_scenario)

@@ -1,0 +1,28 @@
+#include <lgabench/harness/cell_plugins.hpp>
+
+#include <lgabench/harness/run_directory.hpp>
+
+namespace lgabench {
+
+const PluginInfo* method_plugin(const Cell& cell, const Catalogue& catalogue) {
+  return cell.method.is_reference() ? nullptr : &catalogue.find("method", cell.method.id);
+}
+
+const PluginInfo* acting_plugin(const Cell& cell, const Catalogue& catalogue) {
+  return cell.method.acts ? &catalogue.find("method", cell.method.acts->id) : nullptr;
+}
+
+std::vector<PluginInfo> axis_plugins(const Cell& cell, const Catalogue& catalogue) {
+  std::vector<PluginInfo> plugins;
+  for (const std::string& id : cell.plugin_axes()) plugins.push_back(catalogue.find("perturbation", id));
+  return plugins;
+}
+
+Json build_of(const Cell& cell, const Catalogue& catalogue) {
+  Json build = build_hashes(catalogue.find("engine", cell.engine), method_plugin(cell, catalogue), cell.needs_axes());
+  if (const PluginInfo* acts = acting_plugin(cell, catalogue)) build["acts"] = acts->sha256;
+  for (const PluginInfo& axis : axis_plugins(cell, catalogue)) add_axis(build, axis);
+  return build;
+}
+
+}  // namespace lgabench

@@ -1,0 +1,20 @@
+// Which plugins compute a cell.
+#pragma once
+#include <vector>
+
+#include <lgabench/plugin/loader.hpp>
+#include <lgabench/record/cell.hpp>
+
+namespace lgabench {
+
+/// What selects; null of a reference row. @throws as Catalogue::find().
+const PluginInfo* method_plugin(const Cell& cell, const Catalogue& catalogue);
+/// What acts in place of it; null where the method does. @throws likewise.
+const PluginInfo* acting_plugin(const Cell& cell, const Catalogue& catalogue);
+/// Those whose axes its arms have. @throws likewise.
+std::vector<PluginInfo> axis_plugins(const Cell& cell, const Catalogue& catalogue);
+
+/// Hashes of all that computes the cell, by name. @throws likewise.
+Json build_of(const Cell& cell, const Catalogue& catalogue);
+
+}  // namespace lgabench
