@@ -2,14 +2,13 @@
 // map answers at once. After Diffusion Policy (Chi et al., RSS 2023, arXiv 2303.04137) with the deterministic steps of
 // DDIM (Song et al., ICLR 2021) and, as in Act3D (2306.17817), the picture's features at the place that is being
 // denoised: one action in place of a sequence, a small encoder that is trained from nothing.
-#include <torch/torch.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/learning/cloning_method.hpp>
+#include <lgabench/learning/torch_learner.hpp>
 #include <lgabench/plugin/plugin.hpp>
 
 namespace {
@@ -119,12 +118,14 @@ double left_at(int level) {
   return std::clamp(std::cos(angle) * std::cos(angle), 1e-4, 1.);
 }
 
-class Denoiser : public Learner {
+class Denoiser : public TorchTrained {
  public:
   Denoiser(const SampleShape& shape, int updates, std::uint64_t seed)
-      : shape_(shape), updates_(updates), coding_(shape.actions), random_("diffusion/" + std::to_string(seed)) {
-    torch::set_num_threads(1);  // a sum that is split among threads may differ in its last bit
-    torch::manual_seed(seed);   // of the initial weights
+      : TorchTrained(seed),
+        shape_(shape),
+        updates_(updates),
+        coding_(shape.actions),
+        random_("diffusion/" + std::to_string(seed)) {
     for (const SampleShape::Picture& picture : shape.pictures) planes_ += picture.channels;
     const auto convolution = [](std::int64_t in, std::int64_t out, std::int64_t kernel, std::int64_t stride) {
       return nn::Conv2d(nn::Conv2dOptions(in, out, kernel).stride(stride).padding(kernel / 2));
@@ -160,7 +161,7 @@ class Denoiser : public Learner {
     for (const torch::Tensor& p : head_->parameters()) all.push_back(p);
     if (shape_.text)
       for (const torch::Tensor& p : text_->parameters()) all.push_back(p);
-    optimizer_ = std::make_unique<torch::optim::Adam>(all);
+    train(std::move(all));
   }
 
   const std::vector<float>& predict(const Samples& samples) override {
@@ -202,23 +203,7 @@ class Denoiser : public Learner {
     }
     const torch::Tensor noisy = torch::tensor(kept).view({rows, 1}) * wanted +
                                 torch::tensor(added).view({rows, 1}) * torch::tensor(noise).view({rows, numbers_});
-    optimizer_->zero_grad();
-    const torch::Tensor loss = (denoised(view, noisy, at_level) - wanted).square().mean();
-    loss.backward();
-    return loss.item<double>();
-  }
-
-  void update(double rate) override {
-    for (auto& group : optimizer_->param_groups()) group.options().set_lr(rate);
-    optimizer_->step();
-  }
-
-  std::vector<float> parameters() const override {
-    std::vector<float> all;
-    for (const nn::Sequential& part : {encoder_, head_})
-      for (const torch::Tensor& p : part->parameters())
-        all.insert(all.end(), p.data_ptr<float>(), p.data_ptr<float>() + p.numel());
-    return all;
+    return descend((denoised(view, noisy, at_level) - wanted).square().mean());
   }
 
  private:
@@ -285,7 +270,6 @@ class Denoiser : public Learner {
   std::vector<std::pair<int, int>> places_;
   nn::Sequential encoder_, head_{};
   nn::Linear text_{nullptr};
-  std::unique_ptr<torch::optim::Adam> optimizer_;
   torch::Tensor actions_;  // as they are denoised
   std::vector<float> predicted_;
 };

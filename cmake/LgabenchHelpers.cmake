@@ -38,7 +38,7 @@ set(lgabench_public_headers
     plugin/descriptor.hpp plugin/fingerprint.hpp plugin/plugin.hpp
     abstraction/goal_mask.hpp abstraction/repaint.hpp abstraction/select_features.hpp
     learning/archive.hpp learning/cloning_method.hpp learning/featurizer.hpp learning/inputs.hpp learning/learner.hpp learning/noisy_copies.hpp
-    learning/samples.hpp)
+    learning/samples.hpp learning/torch_learner.hpp)
 
 # What `find_package(lgabench CONFIG)` finds: the libraries that plugins link, their headers, lgabench_add_plugin().
 function(lgabench_install_package)
