@@ -428,9 +428,9 @@ TEST(Quality, IsReadAsItWasWritten) {
     const Json json = to_json(written);
     EXPECT_EQ(to_json(read_quality(JsonReader(json, "selection.json"))), json);
   }
-  Json of_0_1 = to_json(quality(selection_of({{"a"}, {}}), selection_of({{"a"}, {"x"}})));
-  of_0_1["avoid"] = nullptr;
-  EXPECT_EQ(read_quality(JsonReader(of_0_1, "selection.json")).size(), 1u);
+  Json with_null = to_json(quality(selection_of({{"a"}, {}}), selection_of({{"a"}, {"x"}})));
+  with_null["avoid"] = nullptr;
+  EXPECT_EQ(read_quality(JsonReader(with_null, "selection.json")).size(), 1u);
 }
 
 TEST(Quality, AMeanLeavesOutWhatIsUndefined) {

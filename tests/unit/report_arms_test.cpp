@@ -183,14 +183,10 @@ TEST(Arms, SayHowManyDemonstrationsSeveralCommandsHad) {
   EXPECT_EQ(report::Table().demonstrations_text(1), "1 demonstration");
   FabricatedRun run;
   run.run["suite"] = "q3";
-  run.run["version"] = "0.2.0";
   run.add(ambiguous("lga", 20, 15));
   rows_of(run);
   EXPECT_SAYS(read_file(run.path / "report.md"), "### demonstrations: 50 per command, 100 in all");
   EXPECT_SAYS(table_text(run.path), "\ndemonstrations: 50 per command, 100 in all");
-  run.run["version"] = "0.1.0";  // which divided them among the commands
-  rows_of(run);
-  EXPECT_SAYS(read_file(run.path / "report.md"), "### 50 demonstrations");
 }
 
 TEST(Paper, BarsBelongToTheirScenarios) {

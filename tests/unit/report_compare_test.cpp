@@ -174,30 +174,26 @@ TEST(Compare, TakesTheArmsOfBothRuns) {
 }
 
 TEST(Compare, PairsRowsByWhatTheyAreNotByTheirNames) {
-  FabricatedRun old, now;
+  FabricatedRun before, now;
   const auto add = [](FabricatedRun& run, const std::string& row, int won, const Json& options) {
     Spec spec{row, won};
     spec.options = options;
     run.add(spec);
   };
-  add(old, "lga", 18, {{"batch_norm", false}, {"loss", "norm"}});
-  add(old, "lga+batch_norm=true", 6, {{"batch_norm", true}, {"loss", "norm"}});
-  Json today{{"loss", "norm"},     {"batches", "shuffled"},  {"picture", "none"},
-             {"instances", "all"}, {"policy", "regression"}, {"network", "plain"}};
-  add(now, "lga+network=plain", 18, today);
-  today["network"] = "text";
-  add(now, "lga", 6, today);
-  today["batches"] = "drawn";
-  add(now, "lga+batches=drawn", 9, today);
-  const RunComparison comparison = compared(old, now);
+  add(before, "lga", 18, {{"loss", "norm"}, {"network", "plain"}});
+  add(before, "lga+network=text", 6, {{"loss", "norm"}, {"network", "text"}});
+  add(now, "lga+network=plain", 18, {{"loss", "norm"}, {"network", "plain"}});
+  add(now, "lga", 6, {{"loss", "norm"}, {"network", "text"}});
+  add(now, "lga+loss=squared", 9, {{"loss", "squared"}, {"network", "text"}});
+  const RunComparison comparison = compared(before, now);
   ASSERT_EQ(comparison.rows.size(), 2u);
   EXPECT_EQ(comparison.rows[0].method, "lga");
-  EXPECT_EQ(comparison.rows[0].method_a, "lga+batch_norm=true");
+  EXPECT_EQ(comparison.rows[0].method_a, "lga+network=text");
   EXPECT_EQ(comparison.rows[1].method, "lga+network=plain");
   EXPECT_EQ(comparison.rows[1].method_a, "lga");
   for (const ComparedRow& row : comparison.rows) EXPECT_EQ(row.change.difference, 0);
   EXPECT_EQ(comparison.only_a, 0);
-  EXPECT_EQ(comparison.only_b, 1) << "batches=drawn has no row in the old run";
+  EXPECT_EQ(comparison.only_b, 1) << "loss=squared has no row in the earlier run";
   EXPECT_SAYS(report::comparison_text(comparison), "LGA network=plain (in A LGA)");
 }
 

@@ -24,7 +24,7 @@ class FabricatedRun : public TemporaryDirectory {
            {"preset", "smoke"},
            {"smoke", true},
            {"cells", Json::array()},
-           {"version", "0.2.0"},
+           {"version", "0.3.0"},
            {"machine", {{"processor", "a processor"}, {"cores", 2}, {"memory_gib", 8.0}, {"system", "Linux"}}},
            {"plugins", {{{"kind", "method"}, {"id", "lga"}, {"version", "0.1"}, {"sha256", std::string(64, 'a')}}}},
            {"build", {{"lgabench-worker", std::string(64, 'b')}}},

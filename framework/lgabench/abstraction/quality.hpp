@@ -39,7 +39,7 @@ Json count_json(double count);
 Json to_json(const Quality& quality);
 Json to_json(const SetQuality& quality);
 
-/// What to_json() wrote; a null set, as runs of 0.1 have, is left out. @throws InputError for anything else.
+/// What to_json() wrote, or null for none; a null set is left out. @throws InputError for anything else.
 Quality read_quality(const JsonReader& reader);
 
 }  // namespace lgabench

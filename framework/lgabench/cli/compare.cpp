@@ -45,7 +45,7 @@ void add_compare(CLI::App& app, int& exit) {
       "Example: lgabench compare runs/before runs/after\n         lgabench compare runs/paper runs/mine --rows "
       "lga,my_method\nThe verdict comes first: whether a row is worse beyond chance, or a cell of A fails in B or is "
       "missing there.\nExit 1: any of these; with --rows, cells may be missing.\nRows are paired by method and "
-      "options, not by name, including rows of a run of 0.1. Cells that played other scenes are listed, not compared.");
+      "options, not by name. Cells that played other scenes are listed, not compared.");
   verb->callback([options, &exit] {
     std::optional<report::RowPair> rows;
     if (!options->rows.empty()) rows = report::RowPair{options->rows[0], options->rows[1]};

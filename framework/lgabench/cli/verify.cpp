@@ -261,7 +261,7 @@ void add_verify(CLI::App& app, int& exit) {
       "others, the verdict over all cells is \"agrees\" if at most 1 % of the episodes ended differently, and in no "
       "row more of them in one direction than chance allows.\nExit 0: every cell is bit-identical. Exit 1: the verdict "
       "is \"differs\", or a cell was edited. Exit 5: it is \"agrees\": bytes differ, and the record names another "
-      "build, processor or data.\nA run of 0.1 is refused: verify it with 0.1.");
+      "build, processor or data.");
   verb->callback([a, &exit] { exit = verify(*a); });
 }
 

@@ -77,7 +77,7 @@ Json to_json(const ActingMethod& acts);
 ActingMethod read_acting_method(const JsonReader& reader);
 
 Json to_json(const Cell& cell);
-/// What cells of 0.1 lack takes the value that held then. @throws InputError with `file` and place.
+/// Without `test_scenes` they are shared. @throws InputError with `file` and place.
 Cell read_cell(const Json& json, const std::string& file);
 
 /// The cell that cell.json in `directory` describes. No link is followed.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <lgabench/core/version.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/record/suite_claims.hpp>
 
@@ -38,6 +39,9 @@ std::optional<RunRecord::Shard> shard_at(const JsonReader& reader, std::size_t c
   return one;
 }
 
+// "0.3" of "0.3.0"
+std::string series(const std::string& version) { return version.substr(0, version.rfind('.')); }
+
 }  // namespace
 
 Json RunRecord::programs() const {
@@ -60,11 +64,14 @@ RunRecord read_run_record(const fs::path& run) {
 RunRecord read_run_record(const Json& json, const std::string& file) {
   const JsonReader reader(json, file);
   RunRecord record;
+  record.version = reader.at("version").string();
+  if (const std::string old = series(record.version); old == "0.1" || old == "0.2")
+    throw InputError(
+        fmt::format("{}: of lgabench {}, whose runs {} does not read", file, record.version, LGABENCH_VERSION));
   record.suite = reader.at("suite").string();
   record.preset = text_at(reader, "preset");
   record.smoke = reader.at("smoke").boolean();
   record.cells = read_cell_keys(reader);
-  record.version = reader.at("version").string();
   record.program = text_at(reader, "program");
   record.command = text_at(reader, "command");
   record.started = text_at(reader, "started");
@@ -111,14 +118,7 @@ void write_run_record(const fs::path& run, const RunRecord& record) {
   write_file(record_file(run), to_json(record).dump(1) + '\n');
 }
 
-bool same_cells(const std::string& version, const std::string& other) {
-  // 0.3 adds suites and options to 0.2, and computes what both have to the same bytes.
-  const auto series = [](const std::string& of) {
-    const std::string first = of.substr(0, of.rfind('.'));
-    return first == "0.3" ? "0.2" : first;
-  };
-  return series(version) == series(other);
-}
+bool same_cells(const std::string& version, const std::string& other) { return series(version) == series(other); }
 
 std::string difference(const RunRecord& there, const RunRecord& wanted) {
   for (const auto& [setting, value] : wanted.request.items())

@@ -55,7 +55,7 @@ std::filesystem::path record_file(const std::filesystem::path& run);
 bool is_run(const std::filesystem::path& directory);
 
 /// The record of the run in that directory. No link is followed.
-/// @throws InputError naming file and place for what is missing or malformed.
+/// @throws InputError naming file and place for what is missing or malformed, and for a run of 0.1 or 0.2.
 RunRecord read_run_record(const std::filesystem::path& run);
 /// Likewise of a JSON text that was read from `file`.
 RunRecord read_run_record(const Json& json, const std::string& file);
@@ -67,8 +67,7 @@ void write_run_record(const std::filesystem::path& run, const RunRecord& record)
 /// `confinement` of a run in which methods were let out of it, for good: whatever cells of it are computed later.
 constexpr const char* unconfined_run = "none, by --unconfined";
 
-/// Whether two versions of lgabench compute the same cells: they differ in their last number at most, or are of 0.2 and
-/// 0.3.
+/// Whether two versions of lgabench compute the same cells: they differ in their last number at most.
 bool same_cells(const std::string& version, const std::string& other);
 
 /// Which setting of two runs differs first; data and versions may differ where no setting does.

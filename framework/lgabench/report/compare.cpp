@@ -11,7 +11,6 @@
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/core/suggest.hpp>
 #include <lgabench/report/names.hpp>
-#include <lgabench/report/old_runs.hpp>
 
 namespace lgabench::report {
 namespace {
@@ -23,8 +22,8 @@ struct CellPair {
 
 // Whose methods differ is measured alike where two `rows` are compared.
 auto measures(const CellResult& c, bool rows) {
-  return std::tuple(c.layout, c.engine, c.scenario, rows ? "" : c.id, rows ? "" : canonical(meaning_of(c.options)),
-                    c.demonstrations * c.demonstrated_commands, c.training_seed, c.participant);
+  return std::tuple(c.layout, c.engine, c.scenario, rows ? "" : c.id, rows ? "" : canonical(c.options),
+                    c.demonstrations, c.training_seed, c.participant);
 }
 
 // The run without its other rows. @throws InputError where there is no such row

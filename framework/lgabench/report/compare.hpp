@@ -59,8 +59,8 @@ struct RowPair {
   std::string a, b;
 };
 
-/// Pairs cells by what they measure: scenario, layout, engine, method and its options (whatever its row is named, see
-/// old_runs.hpp), demonstrations, training seed; their episodes by arm and index. With `rows`, of one row each,
+/// Pairs cells by what they measure: scenario, layout, engine, method and its options (whatever its row is
+/// named), demonstrations, training seed; their episodes by arm and index. With `rows`, of one row each,
 /// whatever their methods: the cells of an equal scenario, layout, engine, number of demonstrations and training seed.
 /// Deterministic. @throws InputError, in one line that says what differs, for runs of other suites or episodes, for
 /// runs that have no arm of a cell with the same scenes and commands in common, and for a row that is not there.

@@ -247,7 +247,6 @@ RunResults read_run(const fs::path& run) {
   for (const std::string& key : found)
     if (asked.count(key) == 0) ++results.foreign;
 
-  const bool divided = results.record.version == "0.1.0";
   std::map<std::string, std::size_t> order;  // of scenarios: the suite's, which run.json's cells keep
   std::vector<std::string> played;
   for (const std::string& key : listed)
@@ -282,7 +281,6 @@ RunResults read_run(const fs::path& run) {
   }
   for (CellResult& cell : results.cells) {
     if (cell.rehearsal) results.rehearsal = true;
-    if (divided) cell.demonstrated_commands = 1;
     order.emplace(cell.scenario, order.size());
   }
   const auto place = [&order](const CellResult& c) {

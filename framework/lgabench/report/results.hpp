@@ -52,7 +52,7 @@ struct CellResult {
   std::map<std::string, Perturbation> perturbations;  // of the arms that have one; their control is the first arm
   std::map<std::string, UnchangedInputs> inputs;      // of these, as perturbed.jsonl says
   std::vector<CommandResult> commands;
-  int demonstrated_commands = 1;  // each had `demonstrations`; 1 where they were divided among the commands (0.1.0)
+  int demonstrated_commands = 1;  // each had `demonstrations`
   bool failed = false;
   std::string fault, reason;          // where it failed; fault: plugin or host, which it is too where it cannot be read
   std::vector<std::string> log_tail;  // what a failed cell's worker printed last

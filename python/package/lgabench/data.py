@@ -56,6 +56,8 @@ def load_run(directory: Path, verify: bool = True) -> Run:
 
     root = pathlib.Path(directory)
     run = json.loads(_read(root / "run.json"))
+    if run["version"].startswith(("0.1.", "0.2.")):
+        raise ValueError(f"{root / 'run.json'}: of lgabench {run['version']}, whose runs this version does not read")
     cells: list[dict[str, Any]] = []
     episodes: list[dict[str, Any]] = []
     training: list[dict[str, Any]] = []
