@@ -6,7 +6,6 @@
 #include <memory>
 
 #include <lgabench/cell/runs_below.hpp>
-#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/scratch.hpp>

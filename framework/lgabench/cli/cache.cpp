@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <memory>
 
-#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -69,12 +68,11 @@ void add_cache(CLI::App& app, int& exit) {
     bool json = false;
   };
   auto a = std::make_shared<CacheArguments>();
-  CLI::App* verb = app.add_subcommand("cache", "Show how large the cache of demonstrations is, or empty it");
-  verb->add_option("what", a->what, "size: print it; clear: remove its files")
-      ->check(one_of("action", {"size", "clear"}));
-  verb->add_option("--cache", a->directory, "Its directory (default: $LGABENCH_CACHE, else ~/.cache/lgabench)");
-  verb->add_flag("--json", a->json, "Print one JSON object");
-  arrange(*verb, "", {{"what", "size|clear"}, {"--cache", "DIR"}});
+  Verb verb(app, "cache", "Show how large the cache of demonstrations is, or empty it");
+  verb.option("what size|clear", a->what, "size: print it; clear: remove its files",
+              one_of("action", {"size", "clear"}));
+  verb.option("--cache DIR", a->directory, "Its directory (default: $LGABENCH_CACHE, else ~/.cache/lgabench)");
+  verb.option("--json", a->json, "Print one JSON object");
   verb->footer(
       "Demonstrations that were removed are made again when a run needs them. A cell that is running at the time loses "
       "nothing but time.\nExample: lgabench cache clear");

@@ -10,7 +10,6 @@
 #include <string_view>
 
 #include <lgabench/cli/findings.hpp>
-#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/colour.hpp>
 #include <lgabench/core/environments.hpp>
@@ -182,21 +181,16 @@ int check_plugin(const CheckPluginArguments& a) {
 
 void add_check_plugin(CLI::App& app, int& exit) {
   auto a = std::make_shared<CheckPluginArguments>();
-  CLI::App* verb = app.add_subcommand("check-plugin", "Check a plugin for mistakes, and say how to fix them");
-  verb->add_option("file", a->file,
-                   "The plugin's library, FILE.so, or a method or perturbation in Python, FILE.py:CLASS")
-      ->required()
-      ->type_name("FILE");
-  verb->add_option("--python", a->python, "The interpreter for a plugin in Python")->capture_default_str();
-  verb->add_option("--set", a->settings, "An option of the plugin; can be repeated")->allow_extra_args(false);
-  verb->add_option("--environment", a->environment, "The environment to check it in")
-      ->check(one_of("environment", environment_ids()));
-  verb->add_option("--timeout", a->timeout_s, "Time limit of each of the two processes, in seconds")
-      ->check(within(1, 1e6))
-      ->capture_default_str();
-  verb->add_flag("--json", a->json, "Print one JSON object");
-  arrange(*verb, "",
-          {{"--python", "PROGRAM"}, {"--set", "OPTION=VALUE"}, {"--environment", "ID"}, {"--timeout", "SECONDS"}});
+  Verb verb(app, "check-plugin", "Check a plugin for mistakes, and say how to fix them");
+  verb.option("file FILE", a->file,
+              "The plugin's library, FILE.so, or a method or perturbation in Python, FILE.py:CLASS", required);
+  verb.option("--python PROGRAM", a->python, "The interpreter for a plugin in Python", with_default);
+  verb.option("--set OPTION=VALUE", a->settings, "An option of the plugin; can be repeated", repeatable);
+  verb.option("--environment ID", a->environment, "The environment to check it in",
+              one_of("environment", environment_ids()));
+  verb.option("--timeout SECONDS", a->timeout_s, "Time limit of each of the two processes, in seconds", within(1, 1e6),
+              with_default);
+  verb.option("--json", a->json, "Print one JSON object");
   verb->footer(
       "Two fresh processes use the plugin as cells do, with the same seed. Exit 1 if there is a problem.\nWithout "
       "--environment, an engine or a perturbation is checked in every environment, and a method in the first that has "

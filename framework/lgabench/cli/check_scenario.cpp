@@ -12,7 +12,6 @@
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/findings.hpp>
 #include <lgabench/cli/gallery.hpp>
-#include <lgabench/cli/help.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
@@ -170,29 +169,17 @@ int check_scenario(const CheckScenarioArguments& a) {
 
 void add_check_scenario(CLI::App& app, int& exit) {
   auto a = std::make_shared<CheckScenarioArguments>();
-  CLI::App* verb = app.add_subcommand("check-scenario", worker_summary("check-scenario"));
-  verb->add_option("scenario", a->file, "The scenario's file, or its id")->required();
-  verb->add_option("--scenes", a->scenes, "Scenes per arm and layout")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  verb->add_option("--layout", a->layouts,
-                   "Layouts of the task, separated by commas (default: those of --suite, else the task's first two)")
-      ->delimiter(',')
-      ->check(one_of("layout", installed_layouts()));
-  verb->add_option("--suite", a->suite, "Check the scenario as this suite plays it: its training scenes, its arms");
-  verb->add_option("--engine", a->engine, "An engine, by plugin id (default: the one that suites use)");
-  verb->add_option("--out", a->out, "The file for the picture (default: SCENARIO.png)");
-  add_plugin_path(*verb, a->plugin_path);
-  add_scenario_path(*verb);
-  arrange(*verb, "",
-          {{"scenario", "FILE"},
-           {"--scenes", "N"},
-           {"--layout", "LAYOUT,..."},
-           {"--suite", "SUITE"},
-           {"--engine", "ENGINE"},
-           {"--out", "FILE"},
-           {"--plugin-path", "PATH"},
-           {"--scenario-path", "DIR"}});
+  Verb verb(app, "check-scenario", worker_summary("check-scenario"));
+  verb.option("scenario FILE", a->file, "The scenario's file, or its id", required);
+  verb.option("--scenes N", a->scenes, "Scenes per arm and layout", CLI::Range(1, 100000), with_default);
+  verb.option("--layout LAYOUT,...", a->layouts,
+              "Layouts of the task, separated by commas (default: those of --suite, else the task's first two)",
+              one_of("layout", installed_layouts()));
+  verb.option("--suite SUITE", a->suite, "Check the scenario as this suite plays it: its training scenes, its arms");
+  verb.option("--engine ENGINE", a->engine, "An engine, by plugin id (default: the one that suites use)");
+  verb.option("--out FILE", a->out, "The file for the picture (default: SCENARIO.png)");
+  add_plugin_path(verb, a->plugin_path);
+  add_scenario_path(verb);
   verb->footer("Exit 1 if there is a problem.\nExample: lgabench check-scenario round.json");
   verb->callback([a, &exit] { exit = check_scenario(*a); });
 }

@@ -7,7 +7,6 @@
 #include <set>
 #include <string_view>
 
-#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/run_plan.hpp>
 #include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -180,27 +179,23 @@ int write_scripts(ClusterArguments a) {
 
 void add_cluster(CLI::App& app, int& exit) {
   auto a = std::make_shared<ClusterArguments>();
-  CLI::App* verb = app.add_subcommand("cluster", "Write scripts that compute a run as a Slurm job array");
-  add_run_options(*verb, a->run);
+  Verb verb(app, "cluster", "Write scripts that compute a run as a Slurm job array");
+  add_run_options(verb, a->run);
   std::set<std::string> of_run;
   for (const CLI::Option* option : verb->get_options())
     if (option->nonpositional() && option->get_name() != "--out" && option != verb->get_help_ptr() &&
         option != verb->get_help_all_ptr())
       of_run.insert(option->get_name());
-  leave_to_help_all(*verb, of_run);
-  verb->add_option("--elements", a->elements,
-                   "Number of elements of the job array, each a part of the run; a few long ones are best")
-      ->required()
-      ->check(CLI::Range(1, 100000));
-  verb->add_option("--time", a->time, "Time limit of an element, as HH:MM:SS")->required();
-  verb->add_option("--partition", a->partition, "Slurm partition");
-  verb->add_option("--cpus", a->cpus, "Cores per element, each computing a cell")
-      ->check(CLI::Range(1, 4096))
-      ->capture_default_str();
-  verb->add_option("--timings", a->timings,
-                   "A run, for instance of the preset smoke, whose times are used to predict the duration");
-  arrange(*verb, "The array",
-          {{"--elements", "N"}, {"--time", "TIME"}, {"--partition", "NAME"}, {"--cpus", "N"}, {"--timings", "RUN"}});
+  verb.leave_to_help_all(of_run);
+  verb.below("The array");
+  verb.option("--elements N", a->elements,
+              "Number of elements of the job array, each a part of the run; a few long ones are best", required,
+              CLI::Range(1, 100000));
+  verb.option("--time TIME", a->time, "Time limit of an element, as HH:MM:SS", required);
+  verb.option("--partition NAME", a->partition, "Slurm partition");
+  verb.option("--cpus N", a->cpus, "Cores per element, each computing a cell", CLI::Range(1, 4096), with_default);
+  verb.option("--timings RUN", a->timings,
+              "A run, for instance of the preset smoke, whose times are used to predict the duration");
   verb->footer(
       "Example: lgabench cluster q1 --preset leaderboard --elements 40 --time 02:00:00 --out runs/q1\nWrites three "
       "scripts into --out: array.sbatch, merge.sbatch (which merges the parts and makes the report) and submit. It "

@@ -1,7 +1,6 @@
 // lgabench compare: is run B worse than run A?
 #include <fmt/format.h>
 
-#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -28,19 +27,17 @@ void add_compare(CLI::App& app, int& exit) {
     bool json = false, times = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand(
-      "compare",
-      "Compare two runs scene by scene: success and seconds of each row; exit 1 if B is worse beyond chance");
-  verb->add_option("A", options->a, "A run's directory")->required();
-  verb->add_option("B", options->b,
-                   "Another run's directory, with the same suite and number of episodes; with --rows it may be left "
-                   "out and is then A");
-  verb->add_option("--rows", options->rows, "Compare a row of A with a row of B, whatever their methods and options")
-      ->delimiter(',')
+  Verb verb(app, "compare",
+            "Compare two runs scene by scene: success and seconds of each row; exit 1 if B is worse beyond chance");
+  verb.option("A", options->a, "A run's directory", required);
+  verb.option("B", options->b,
+              "Another run's directory, with the same suite and number of episodes; with --rows it may be left "
+              "out and is then A");
+  verb.option("--rows ROW_A,ROW_B", options->rows,
+              "Compare a row of A with a row of B, whatever their methods and options")
       ->expected(2);
-  verb->add_flag("--times", options->times, "Print the seconds of each phase, not only of whole cells");
-  verb->add_flag("--json", options->json, "Print JSON instead of tables");
-  arrange(*verb, "", {{"A", "A"}, {"B", "B"}, {"--rows", "ROW_A,ROW_B"}});
+  verb.option("--times", options->times, "Print the seconds of each phase, not only of whole cells");
+  verb.option("--json", options->json, "Print JSON instead of tables");
   verb->footer(
       "Example: lgabench compare runs/before runs/after\n         lgabench compare runs/paper runs/mine --rows "
       "lga,my_method\nThe verdict comes first: whether a row is worse beyond chance, or a cell of A fails in B or is "

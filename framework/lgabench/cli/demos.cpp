@@ -8,7 +8,6 @@
 #include <lgabench/cell/hdf5.hpp>
 #include <lgabench/cell/steps.hpp>
 #include <lgabench/cli/commands.hpp>
-#include <lgabench/cli/help.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -86,39 +85,27 @@ void inspect(const std::string& file) {
 
 void add_demos(CLI::App& app, int&) {
   auto a = std::make_shared<DemosArguments>();
-  CLI::App* verb = app.add_subcommand("demos", worker_summary("demos"));
-  verb->add_option("scenario", a->scenario, "A scenario's id; scenes are drawn from its true distribution");
-  verb->add_option("--selection", a->selection,
-                   "Draw targets from what a method selected instead: the selection.json of a cell");
-  verb->add_option("--layout", a->layout,
-                   "How objects are placed: one of `lgabench list layouts --of SCENARIO` (default: the first)")
-      ->check(one_of("layout", installed_layouts()));
-  verb->add_option("--n", a->n, "Number of demonstrations")->check(CLI::Range(1, 1'000'000))->capture_default_str();
-  verb->add_option("--seed", a->seed, "Training seed")->capture_default_str();
-  verb->add_option("--noisy", a->noisy, "DART: number of noisy rollouts per demonstration")
-      ->check(CLI::Range(0, 1000))
-      ->capture_default_str();
-  verb->add_option("--noise", a->noise,
-                   "DART: standard deviation of the noise in the last rollout; it grows linearly up to there")
-      ->check(within(0, 10))
-      ->capture_default_str();
-  verb->add_option("--engine", a->engine, "An engine, by plugin id (default: the one that suites use)");
-  add_plugin_path(*verb, a->plugin_path);
-  add_scenario_path(*verb);
-  auto* out = verb->add_option("--out", a->out, "The HDF5 file to write");
-  verb->add_option("--inspect", a->inspect, "Print what a file of demonstrations holds")->excludes(out);
-  arrange(*verb, "", {{"scenario", "SCENARIO"}});
-  arrange(*verb, "What is demonstrated",
-          {{"--selection", "FILE"},
-           {"--layout", "LAYOUT"},
-           {"--n", "N"},
-           {"--seed", "N"},
-           {"--noisy", "N"},
-           {"--noise", "SIGMA"},
-           {"--engine", "ENGINE"},
-           {"--plugin-path", "PATH"},
-           {"--scenario-path", "DIR"}});
-  arrange(*verb, "Files", {{"--out", "FILE"}, {"--inspect", "FILE"}});
+  Verb verb(app, "demos", worker_summary("demos"));
+  verb.option("scenario SCENARIO", a->scenario, "A scenario's id; scenes are drawn from its true distribution");
+  verb.below("What is demonstrated");
+  verb.option("--selection FILE", a->selection,
+              "Draw targets from what a method selected instead: the selection.json of a cell");
+  verb.option("--layout LAYOUT", a->layout,
+              "How objects are placed: one of `lgabench list layouts --of SCENARIO` (default: the first)",
+              one_of("layout", installed_layouts()));
+  verb.option("--n N", a->n, "Number of demonstrations", CLI::Range(1, 1'000'000), with_default);
+  verb.option("--seed N", a->seed, "Training seed", with_default);
+  verb.option("--noisy N", a->noisy, "DART: number of noisy rollouts per demonstration", CLI::Range(0, 1000),
+              with_default);
+  verb.option("--noise SIGMA", a->noise,
+              "DART: standard deviation of the noise in the last rollout; it grows linearly up to there", within(0, 10),
+              with_default);
+  verb.option("--engine ENGINE", a->engine, "An engine, by plugin id (default: the one that suites use)");
+  add_plugin_path(verb, a->plugin_path);
+  add_scenario_path(verb);
+  verb.below("Files");
+  auto* out = verb.option("--out FILE", a->out, "The HDF5 file to write");
+  verb.option("--inspect FILE", a->inspect, "Print what a file of demonstrations holds")->excludes(out);
   verb->footer(
       "Example: lgabench demos heart --n 10 --out heart.hdf5\nAs a method of a run got them: lgabench demos heart "
       "--selection runs/NAME/cells/KEY/selection.json --out lga.hdf5");

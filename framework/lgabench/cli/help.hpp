@@ -1,7 +1,7 @@
 // How commands and options are shown: the same words in --help, in the man page and in completions.
 #pragma once
 #include <CLI/CLI.hpp>
-#include <initializer_list>
+#include <functional>
 #include <memory>
 #include <set>
 #include <string>
@@ -23,9 +23,60 @@ struct OptionGroup {
   std::vector<OptionHelp> options;
 };
 
-/// Puts options of a command, each with a word for what it takes ("" for a flag), below one title; a title of "" leaves
-/// them where they are.
-void arrange(CLI::App& verb, const char* title, std::initializer_list<std::pair<const char*, const char*>> options);
+/// What holds of an option: its default is in the help; it must be given; one value follows its name, which may be
+/// repeated; --help leaves it to --help-all.
+enum Mark { with_default, required, repeatable, rare };
+
+/// A command whose options are declared once, in the order in which they are shown.
+class Verb {
+ public:
+  Verb(CLI::App& app, const char* name, const std::string& summary) : verb_(app.add_subcommand(name, summary)) {}
+  Verb(const Verb&) = delete;
+  Verb& operator=(const Verb&) = delete;
+  /// Gives it a --help-all if an option is rare.
+  ~Verb();
+
+  CLI::App* operator->() const { return verb_; }
+  CLI::App* get() const { return verb_; }
+
+  /// Options that are declared from here on stand below that title.
+  void below(const char* title) { title_ = title; }
+  /// `words`: "--demos N,...", its name and what it takes, several values with commas if that has one; "--quiet" for a
+  /// bool; "RUN" or "run RUN" for what is taken by position. `value`: where it goes, or a std::function that is given
+  /// it. `more`: Marks, and checks as CLI::Option::check() takes them.
+  template <class T, class... More>
+  CLI::Option* option(const std::string& words, T& value, const std::string& help, const More&... more) {
+    CLI::Option* const option = declare(words.substr(0, words.find(' ')), value, help);
+    arrange(*option, words);
+    (add(*option, more), ...);
+    return option;
+  }
+  /// Has these be rare, and no others.
+  void leave_to_help_all(std::set<std::string> options) { rare_ = std::move(options); }
+
+ private:
+  CLI::Option* declare(const std::string& name, bool& value, const std::string& help) {
+    return verb_->add_flag(name, value, help);
+  }
+  template <class T>
+  CLI::Option* declare(const std::string& name, T& value, const std::string& help) {
+    return verb_->add_option(name, value, help);
+  }
+  template <class T>
+  CLI::Option* declare(const std::string& name, const std::function<void(const T&)>& use, const std::string& help) {
+    return verb_->add_option_function(name, use, help);
+  }
+  void arrange(CLI::Option& option, const std::string& words) const;
+  void add(CLI::Option& option, Mark mark);
+  template <class Check>
+  void add(CLI::Option& option, const Check& check) {
+    option.check(check);
+  }
+
+  CLI::App* verb_;
+  std::string title_;
+  std::set<std::string> rare_;
+};
 
 /// Options of a command with several actions whose help begins with some of these ("build, check: documents that ...")
 /// belong to them alone. @throws InputError for one that was given beside another `action`.
@@ -49,8 +100,5 @@ std::string wrapped(std::string_view text, std::size_t indent);
 
 /// What writes --help of an app and of the commands that are added to it later.
 std::shared_ptr<CLI::FormatterBase> help_formatter();
-
-/// Has the command's --help leave these out ("--shard"), which its --help-all then shows; none of its own before.
-void leave_to_help_all(CLI::App& verb, std::set<std::string> options);
 
 }  // namespace lgabench::cli

@@ -217,16 +217,13 @@ void add_info(CLI::App& app, int& exit) {
     std::vector<fs::path> directories;
   };
   const auto arguments = std::make_shared<InfoArguments>();
-  CLI::App* verb = app.add_subcommand(
-      "info", "Show everything known about a method, engine, perturbation, suite, scenario or environment");
+  Verb verb(app, "info", "Show everything known about a method, engine, perturbation, suite, scenario or environment");
   verb->footer("Example: lgabench info lga");
-  verb->add_option("name", arguments->name, "A name that `lgabench list` prints")->required()->type_name("NAME");
-  verb->add_flag("--json", arguments->json, "Print one JSON object, or an array where several things share the name");
-  add_plugin_path(*verb, arguments->directories, any_plugin);
-  verb->add_option("--python", arguments->python, "The interpreter for plugins in Python")
-      ->type_name("PROGRAM")
-      ->capture_default_str();
-  add_scenario_path(*verb);
+  verb.option("name NAME", arguments->name, "A name that `lgabench list` prints", required);
+  verb.option("--json", arguments->json, "Print one JSON object, or an array where several things share the name");
+  add_plugin_path(verb, arguments->directories, any_plugin);
+  add_python(verb, arguments->python);
+  add_scenario_path(verb);
   verb->callback([arguments, &exit] {
     info(arguments->name, arguments->json, arguments->directories, arguments->python);
     exit = ok;

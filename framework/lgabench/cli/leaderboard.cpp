@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <ctime>
 #include <optional>
-#include <thread>
 
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/outcome.hpp>
@@ -76,12 +75,18 @@ std::string fresh_words(const leaderboard::Entry& entry, const Json& line) {
   return text;
 }
 
+// The plugins, and in `a` how many cells to compute at once.
+Catalogue ready_to_compute(LeaderboardArguments& a) {
+  Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
+  for (const std::string& method : a.methods) with_python_method(method, a.python, catalogue);
+  a.verify.pool.jobs = jobs_of(a.jobs);
+  return catalogue;
+}
+
 // One line for each entry; a verification is recorded, whatever it says. Entries that cannot be verified stop no other.
 int verify(LeaderboardArguments a) {
   if (a.verify.by.empty()) throw InputError("leaderboard verify: expected --by NAME, who verifies");
-  Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
-  for (const std::string& method : a.methods) with_python_method(method, a.python, catalogue);
-  a.verify.pool.jobs = a.jobs != 0 ? a.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const Catalogue catalogue = ready_to_compute(a);
   std::vector<fs::path> entries;
   if (!a.what.empty())
     entries.push_back(leaderboard::find_entry(a.board, a.what));
@@ -120,9 +125,7 @@ int verify(LeaderboardArguments a) {
 
 // Pictures of each entry that has none, the cheapest first. Entries that cannot be played stop no other.
 int scenes(LeaderboardArguments a) {
-  Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
-  for (const std::string& method : a.methods) with_python_method(method, a.python, catalogue);
-  a.verify.pool.jobs = a.jobs != 0 ? a.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const Catalogue catalogue = ready_to_compute(a);
   std::vector<leaderboard::Entry> entries = leaderboard::read_entries(a.board);
   std::sort(entries.begin(), entries.end(), [](const leaderboard::Entry& one, const leaderboard::Entry& other) {
     return leaderboard::seconds_of_scenes(one) < leaderboard::seconds_of_scenes(other);
@@ -191,64 +194,44 @@ int build(const LeaderboardArguments& a) {
 
 void add_leaderboard(CLI::App& app, int& exit) {
   auto a = std::make_shared<LeaderboardArguments>();
-  CLI::App* verb = app.add_subcommand("leaderboard", "Add results to a leaderboard, check it, and make its pages");
+  Verb verb(app, "leaderboard", "Add results to a leaderboard, check it, and make its pages");
   const Words actions{"add", "verify", "vouch", "build", "check", "withdraw", "scenes"};
-  verb->add_option("ACTION", a->action, "add, verify, vouch, build, check, withdraw or scenes")
-      ->required()
-      ->check(one_of("action", actions));
-  verb->add_option(
+  verb.option("ACTION add|verify|vouch|build|check|withdraw|scenes", a->action,
+              "add, verify, vouch, build, check, withdraw or scenes", required, one_of("action", actions));
+  verb.option(
       "WHAT", a->what,
       "add: a run's directory; verify, vouch, withdraw: an entry's directory or id (verify without one: all entries); "
       "scenes: likewise (without one: all entries that have no pictures)");
-  verb->add_option("LINE", a->line, "vouch: the number of a line in verifications.jsonl, or `withdrawn`");
-  verb->add_option("--board", a->board, "The leaderboard's directory")->capture_default_str();
-  verb->add_option("--entry", a->about,
-                   "add: a file that says who submits the rows, and where their source code is "
-                   "(docs/entering-the-leaderboard.md)");
-  verb->add_option("--rows", a->rows, "add: only these rows of the run")->delimiter(',');
-  CLI::Option* const cells =
-      verb->add_option("--cells", a->verify.cells, "verify: how many cells to play, chosen by a nonce drawn now")
-          ->check(CLI::Range(1, 1000000))
-          ->capture_default_str();
-  verb->add_flag("--fresh", a->verify.fresh, "verify: play on new test scenes, and compare success")->excludes(cells);
-  verb->add_option("--by", a->verify.by, "verify: your name, as the one who verifies");
-  verb->add_option("--jobs", a->jobs, "verify, scenes: cells to compute at once (default: one per core)")
-      ->check(CLI::Range(1, 4096));
-  verb->add_option("--timeout", a->verify.pool.timeout_s, "verify, scenes: seconds after which a cell is stopped")
-      ->check(within(1, 1e7))
-      ->capture_default_str();
-  verb->add_option("--methods", a->methods, "verify, scenes: methods in Python, as FILE.py:Class")->delimiter(',');
-  verb->add_option("--python", a->python, "verify, scenes: the interpreter for methods in Python")
-      ->capture_default_str();
-  add_plugin_path(*verb, a->plugin_path);
-  verb->add_option(
-      "--against", a->against,
+  verb.option("LINE", a->line, "vouch: the number of a line in verifications.jsonl, or `withdrawn`");
+  verb.option("--board DIR", a->board, "The leaderboard's directory", with_default);
+  verb.below("add and withdraw");
+  verb.option("--entry META.json", a->about,
+              "add: a file that says who submits the rows, and where their source code is "
+              "(docs/entering-the-leaderboard.md)");
+  verb.option("--rows ROW,...", a->rows, "add: only these rows of the run");
+  verb.option("--reason WORDS", a->reason, "withdraw: the reason");
+  verb.below("verify and scenes");
+  auto* cells = verb.option("--cells N", a->verify.cells, "verify: how many cells to play, chosen by a nonce drawn now",
+                            CLI::Range(1, 1000000), with_default);
+  verb.option("--fresh", a->verify.fresh, "verify: play on new test scenes, and compare success")->excludes(cells);
+  verb.option("--by NAME", a->verify.by, "verify: your name, as the one who verifies");
+  verb.option("--jobs N", a->jobs, "verify, scenes: cells to compute at once (default: one per core)",
+              CLI::Range(1, 4096));
+  verb.option("--timeout SECONDS", a->verify.pool.timeout_s, "verify, scenes: seconds after which a cell is stopped",
+              within(1, 1e7), with_default);
+  verb.option("--methods FILE.py:CLASS,...", a->methods, "verify, scenes: methods in Python, as FILE.py:Class");
+  verb.option("--python PROGRAM", a->python, "verify, scenes: the interpreter for methods in Python", with_default);
+  add_plugin_path(verb, a->plugin_path);
+  verb.below("build and check");
+  verb.option(
+      "--against REVISION", a->against,
       "build, check: a revision of the repository that this is called in; outcomes that it has must not have changed");
-  verb->add_flag("--maintainer", a->maintainer,
-                 "build, check: with --against, files that are the maintainers' may differ");
-  verb->add_option("--documents", a->documents,
-                   "build, check: documents that contain tables of the board between markers, or a folder of them")
-      ->delimiter(',');
-  verb->add_option("--archive", a->archive,
-                   "build: pack the board into an archive once it is checked, with license and citation");
-  verb->add_option("--reason", a->reason, "withdraw: the reason");
-  arrange(*verb, "",
-          {{"ACTION", "add|verify|vouch|build|check|withdraw|scenes"},
-           {"WHAT", "WHAT"},
-           {"LINE", "LINE"},
-           {"--board", "DIR"}});
-  arrange(*verb, "add and withdraw", {{"--entry", "META.json"}, {"--rows", "ROW,..."}, {"--reason", "WORDS"}});
-  arrange(*verb, "verify and scenes",
-          {{"--by", "NAME"},
-           {"--cells", "N"},
-           {"--fresh", ""},
-           {"--jobs", "N"},
-           {"--timeout", "SECONDS"},
-           {"--plugin-path", "PATH"},
-           {"--methods", "FILE.py:CLASS,..."},
-           {"--python", "PROGRAM"}});
-  arrange(*verb, "build and check",
-          {{"--documents", "PATH,..."}, {"--archive", "OUT.tar.gz"}, {"--against", "REVISION"}, {"--maintainer", ""}});
+  verb.option("--maintainer", a->maintainer,
+              "build, check: with --against, files that are the maintainers' may differ");
+  verb.option("--documents PATH,...", a->documents,
+              "build, check: documents that contain tables of the board between markers, or a folder of them");
+  verb.option("--archive OUT.tar.gz", a->archive,
+              "build: pack the board into an archive once it is checked, with license and citation");
   verb->footer(
       "Example: lgabench leaderboard add runs/q1-leaderboard --entry me.json && lgabench leaderboard build\nadd "
       "refuses a run that is not the whole preset on the board's scenes, and lists what is missing.\nverify plays "
@@ -257,7 +240,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
       "entry again and draws "
       "an episode of each.\nExit 1: refused, different, "
       "or a problem. Exit 2: none of these, but some entry could not be verified or played.");
-  verb->callback([a, actions, verb, &app, &exit] {
+  verb->callback([a, actions, verb = verb.get(), &app, &exit] {
     expect_options_of(*verb, a->action, actions);
     if (!a->what.empty() && (a->action == "build" || a->action == "check"))
       throw InputError(fmt::format("leaderboard {}: \"{}\" is a word too many", a->action, a->what));

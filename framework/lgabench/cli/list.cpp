@@ -185,26 +185,22 @@ void add_list(CLI::App& app, int& exit) {
     std::vector<fs::path> directories;
   };
   const auto arguments = std::make_shared<ListArguments>();
-  CLI::App* verb = app.add_subcommand(
-      "list",
+  Verb verb(
+      app, "list",
       "List methods, engines, perturbations, environments, suites and scenarios, and any plugins that were refused");
-  verb->add_option("KIND", arguments->kind,
-                   fmt::format("Print only the names of one kind, one per line: {}", fmt::join(kinds, ", ")))
-      ->type_name("KIND")
-      ->check(one_of("kind", {kinds.begin(), kinds.end()}));
-  verb->add_option("--of", arguments->of,
-                   "With KIND: only those that a run of this suite accepts; for layouts and sources also a scenario's")
-      ->type_name("SUITE");
+  verb.option("KIND", arguments->kind,
+              fmt::format("Print only the names of one kind, one per line: {}", fmt::join(kinds, ", ")),
+              one_of("kind", {kinds.begin(), kinds.end()}));
+  verb.option("--of SUITE", arguments->of,
+              "With KIND: only those that a run of this suite accepts; for layouts and sources also a scenario's");
+  verb.option("--short", arguments->is_short, "Print a line for each: its id, and a title of a few words");
+  verb.option("--json", arguments->json, "Print one JSON object");
+  add_plugin_path(verb, arguments->directories, any_plugin);
+  add_python(verb, arguments->python);
+  add_scenario_path(verb);
   verb->footer(
       "Examples\n  lgabench list --short\n  lgabench list suites --short\n  lgabench list layouts --of mobile\n"
       "  lgabench list --plugin-path my/build");
-  verb->add_flag("--short", arguments->is_short, "Print a line for each: its id, and a title of a few words");
-  verb->add_flag("--json", arguments->json, "Print one JSON object");
-  add_plugin_path(*verb, arguments->directories, any_plugin);
-  verb->add_option("--python", arguments->python, "The interpreter for plugins in Python")
-      ->type_name("PROGRAM")
-      ->capture_default_str();
-  add_scenario_path(*verb);
   verb->callback([arguments, &exit] {
     const Json all = listing(plugins_at(arguments->directories, arguments->python));
     if (arguments->kind.empty() && !arguments->of.empty()) throw InputError("--of: expected a KIND with it");

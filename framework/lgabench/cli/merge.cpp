@@ -3,7 +3,6 @@
 
 #include <memory>
 
-#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/shell.hpp>
@@ -19,17 +18,15 @@ void add_merge(CLI::App& app, int& exit) {
     bool json = false, partial = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* verb =
-      app.add_subcommand("merge", "Merge shards, or runs of different methods or seeds, and print the table");
-  verb->add_option("OUT", options->out, "The directory to write")->required();
-  verb->add_option(
-          "RUN", options->runs,
-          "Shards of one run, or runs that differ only in methods, scenarios, layouts, engines, demonstrations, seeds "
-          "or --selection-errors; they stay as they are")
-      ->required();
-  verb->add_flag("--partial", options->partial, "Exit 0 although parts of the run are not there yet");
-  verb->add_flag("--json", options->json, "Print summary.json instead of the table");
-  arrange(*verb, "", {{"OUT", "OUT"}, {"RUN", "RUN"}});
+  Verb verb(app, "merge", "Merge shards, or runs of different methods or seeds, and print the table");
+  verb.option("OUT", options->out, "The directory to write", required);
+  verb.option(
+      "RUN", options->runs,
+      "Shards of one run, or runs that differ only in methods, scenarios, layouts, engines, demonstrations, seeds "
+      "or --selection-errors; they stay as they are",
+      required);
+  verb.option("--partial", options->partial, "Exit 0 although parts of the run are not there yet");
+  verb.option("--json", options->json, "Print summary.json instead of the table");
   verb->footer(
       "Example: lgabench merge runs/q1 runs/q1-1of2 runs/q1-2of2\n"
       "         lgabench merge runs/with_mine runs/q1 runs/q1_my_method\n"

@@ -5,7 +5,6 @@
 #include <cctype>
 #include <memory>
 
-#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
@@ -85,17 +84,14 @@ void new_plugin(const NewPluginArguments& a) {
 
 void add_new_plugin(CLI::App& app, int& exit) {
   auto a = std::make_shared<NewPluginArguments>();
-  CLI::App* verb = app.add_subcommand("new-plugin", "Write a working project for a new plugin, for you to change");
-  verb->add_option("name", a->name, "Its id: lower-case letters, digits, underscores")->required()->type_name("NAME");
-  verb->add_option("--kind", a->kind, "method, engine or perturbation; python: a method in Python")
-      ->check(one_of("kind", {"method", "engine", "perturbation", "python"}))
-      ->capture_default_str();
-  verb->add_option("--language", a->language, "c++, or python for a method or a perturbation")
-      ->check(one_of("language", {"c++", "python"}))
-      ->capture_default_str();
-  verb->add_option("--directory", a->directory, "Where to write it (default: ./NAME); it must not exist yet");
-  arrange(*verb, "",
-          {{"--kind", "method|engine|perturbation|python"}, {"--language", "c++|python"}, {"--directory", "DIR"}});
+  Verb verb(app, "new-plugin", "Write a working project for a new plugin, for you to change");
+  verb.option("name NAME", a->name, "Its id: lower-case letters, digits, underscores", required);
+  verb.option("--kind method|engine|perturbation|python", a->kind,
+              "method, engine or perturbation; python: a method in Python",
+              one_of("kind", {"method", "engine", "perturbation", "python"}), with_default);
+  verb.option("--language c++|python", a->language, "c++, or python for a method or a perturbation",
+              one_of("language", {"c++", "python"}), with_default);
+  verb.option("--directory DIR", a->directory, "Where to write it (default: ./NAME); it must not exist yet");
   verb->footer("Example: lgabench new-plugin my_method && cd my_method && cmake --workflow --preset release");
   verb->callback([a, &exit] {
     new_plugin(*a);

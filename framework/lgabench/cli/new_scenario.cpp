@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 
-#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
@@ -151,71 +150,41 @@ void new_scenario(NewScenarioArguments a) {
 
 void add_new_scenario(CLI::App& app, int& exit) {
   auto a = std::make_shared<NewScenarioArguments>();
-  CLI::App* verb =
-      app.add_subcommand("new-scenario", "Write a tabletop scenario of your own: a command, what it means, its scenes");
-  const auto list = [verb](const char* name, Words& words, const char* help) {
-    verb->add_option(name, words, help)->delimiter(',')->allow_extra_args(false);
-  };
-  verb->add_option("name", a->name, "The scenario's id, and the name of its file")->required();
-  verb->add_option("--command", a->commands, "The command's words; asked for if left out; can be repeated")
-      ->allow_extra_args(false);
-  verb->add_option("--unseen", a->unseen, "A command that is tested but never demonstrated; can be repeated")
-      ->allow_extra_args(false);
-  list("--types", a->types, "Object types that the command means, ALL, or \"ALL but TYPE,...\"; asked for if left out");
-  list("--textures", a->textures, "Their textures, ALL, or \"ALL but TEXTURE,...\"");
-  verb->add_option("--also", a->also,
-                   "What it means besides: TYPE,.../TEXTURE,..., or TYPE,... of any texture; can be repeated")
-      ->allow_extra_args(false);
-  verb->add_option("--which", a->rule, "Of several that it means, the one that this rule tells");
-  verb->add_option("--of", a->of, "left_of, right_of, nearest_to, farthest_from: of what, TYPE,.../TEXTURE,...");
-  list("--order", a->order, "first_in: object types or textures, the first of which is the one");
-  verb->add_option("--words", a->words, "What the words alone would mean, where the person takes less of it");
-  list("--other-types", a->other_types, "Object types of what a sweep must not touch");
-  list("--other-textures", a->other_textures, "Their textures, or ALL");
-  verb->add_option("--space", a->space,
-                   "The feature space, whose words you may use (lgabench render --gallery objects draws them)")
-      ->check(one_of("space", {"tabletop", "household"}))
-      ->capture_default_str();
-  verb->add_option("--task", a->task, "What to do with the object")
-      ->check(one_of("task", tasks()))
-      ->capture_default_str();
-  verb->add_option("--angle", a->angle_deg, "rotate: by how much, in degrees");
-  verb->add_flag("--clockwise", a->clockwise, "rotate: clockwise, seen from above");
-  verb->add_option("--distractors", a->distractors, "Number of other objects in a test scene")->capture_default_str();
-  verb->add_flag("--hard", a->hard, "Add an arm where a distractor shares the target's type or texture");
-  verb->add_flag("--near-miss", a->near_miss,
-                 "Add an arm of near misses: all other objects share the target's type or texture, and each other's");
-  verb->add_option(
-          "--careless", a->careless,
-          "What a careless reading would keep, TYPE,.../TEXTURE,...: one is in every test scene; can be repeated")
-      ->allow_extra_args(false);
-  verb->add_option("--undecided", a->undecided,
-                   "What people would not agree on, TYPE,.../TEXTURE,...: never drawn; can be repeated")
-      ->allow_extra_args(false);
-  verb->add_option("--directory", a->directory, "The directory for the file")->capture_default_str();
-  arrange(*verb, "", {{"name", "NAME"}, {"--directory", "DIR"}});
-  arrange(*verb, "The command",
-          {{"--command", "TEXT"},
-           {"--unseen", "TEXT"},
-           {"--space", "SPACE"},
-           {"--types", "TYPE,..."},
-           {"--textures", "TEXTURE,..."},
-           {"--also", "SET"},
-           {"--which", "RULE"},
-           {"--of", "SET"},
-           {"--order", "NAME,..."},
-           {"--words", "SET"},
-           {"--other-types", "TYPE,..."},
-           {"--other-textures", "TEXTURE,..."}});
-  arrange(*verb, "The task and its scenes",
-          {{"--task", "TASK"},
-           {"--angle", "DEGREES"},
-           {"--clockwise", ""},
-           {"--distractors", "N:M"},
-           {"--hard", ""},
-           {"--near-miss", ""},
-           {"--careless", "SET"},
-           {"--undecided", "SET"}});
+  Verb verb(app, "new-scenario", "Write a tabletop scenario of your own: a command, what it means, its scenes");
+  verb.option("name NAME", a->name, "The scenario's id, and the name of its file", required);
+  verb.option("--directory DIR", a->directory, "The directory for the file", with_default);
+  verb.below("The command");
+  verb.option("--command TEXT", a->commands, "The command's words; asked for if left out; can be repeated", repeatable);
+  verb.option("--unseen TEXT", a->unseen, "A command that is tested but never demonstrated; can be repeated",
+              repeatable);
+  verb.option("--types TYPE,...", a->types,
+              "Object types that the command means, ALL, or \"ALL but TYPE,...\"; asked for if left out", repeatable);
+  verb.option("--textures TEXTURE,...", a->textures, "Their textures, ALL, or \"ALL but TEXTURE,...\"", repeatable);
+  verb.option("--also SET", a->also,
+              "What it means besides: TYPE,.../TEXTURE,..., or TYPE,... of any texture; can be repeated", repeatable);
+  verb.option("--which RULE", a->rule, "Of several that it means, the one that this rule tells");
+  verb.option("--of SET", a->of, "left_of, right_of, nearest_to, farthest_from: of what, TYPE,.../TEXTURE,...");
+  verb.option("--order NAME,...", a->order, "first_in: object types or textures, the first of which is the one",
+              repeatable);
+  verb.option("--words SET", a->words, "What the words alone would mean, where the person takes less of it");
+  verb.option("--other-types TYPE,...", a->other_types, "Object types of what a sweep must not touch", repeatable);
+  verb.option("--other-textures TEXTURE,...", a->other_textures, "Their textures, or ALL", repeatable);
+  verb.option("--space SPACE", a->space,
+              "The feature space, whose words you may use (lgabench render --gallery objects draws them)",
+              one_of("space", {"tabletop", "household"}), with_default);
+  verb.below("The task and its scenes");
+  verb.option("--task TASK", a->task, "What to do with the object", one_of("task", tasks()), with_default);
+  verb.option("--angle DEGREES", a->angle_deg, "rotate: by how much, in degrees");
+  verb.option("--clockwise", a->clockwise, "rotate: clockwise, seen from above");
+  verb.option("--distractors N:M", a->distractors, "Number of other objects in a test scene", with_default);
+  verb.option("--hard", a->hard, "Add an arm where a distractor shares the target's type or texture");
+  verb.option("--near-miss", a->near_miss,
+              "Add an arm of near misses: all other objects share the target's type or texture, and each other's");
+  verb.option("--careless SET", a->careless,
+              "What a careless reading would keep, TYPE,.../TEXTURE,...: one is in every test scene; can be repeated",
+              repeatable);
+  verb.option("--undecided SET", a->undecided,
+              "What people would not agree on, TYPE,.../TEXTURE,...: never drawn; can be repeated", repeatable);
   verb->footer(
       "docs/own-scenarios.md says more; docs/formats has every member of the file.\n"
       "Example: lgabench new-scenario round --command \"Bring me something round.\" --types round,ring");

@@ -8,7 +8,6 @@
 #include <memory>
 #include <tuple>
 
-#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/process.hpp>
@@ -102,12 +101,10 @@ int open_runs(fs::path where) {
 
 void add_open(CLI::App& app, int& exit) {
   auto where = std::make_shared<fs::path>();
-  CLI::App* verb = app.add_subcommand("open", "Open a run's report in a browser, or a page over all runs");
-  verb->add_option(
-          "RUN", *where,
-          "A run, whose report is made where it is missing; or a directory, whose runs are served on this "
-          "machine alone, on a page that renews itself while they compute (default: runs, else this directory)")
-      ->type_name("RUN");
+  Verb verb(app, "open", "Open a run's report in a browser, or a page over all runs");
+  verb.option("RUN", *where,
+              "A run, whose report is made where it is missing; or a directory, whose runs are served on this "
+              "machine alone, on a page that renews itself while they compute (default: runs, else this directory)");
   verb->footer(
       "Examples\n"
       "  lgabench open runs/q1-smoke-1a2b3c4d    its report.html\n"

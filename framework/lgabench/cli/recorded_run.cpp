@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <set>
-#include <thread>
 
 #include <lgabench/core/version.hpp>
 #include <lgabench/harness/run_directory.hpp>
+#include <lgabench/host/python_method.hpp>
 #include <lgabench/record/answer_source.hpp>
 #include <lgabench/record/layout.hpp>
 
@@ -37,10 +37,25 @@ Inventory take_stock(const fs::path& run, const RunRecord& record) {
   return inventory;
 }
 
-void expect_same_version(const fs::path& run, const RunRecord& record, const std::string& verb) {
+Catalogue RecomputeArguments::catalogue() const {
+  Catalogue catalogue = plugins_at(plugin_path, python);
+  for (const std::string& method : methods) with_python_method(method, python, catalogue);
+  return catalogue;
+}
+
+void add_methods_in_python(Verb& verb, RecomputeArguments& a) {
+  verb.option("--methods FILE.py:CLASS,...", a.methods,
+              "Methods in Python, as FILE.py:Class; separate several with commas");
+  add_python(verb, a.python);
+}
+
+RunRecord record_to_recompute(const fs::path& run, const std::string& verb) {
+  expect_run(run);
+  RunRecord record = read_run_record(run);
   if (!same_cells(record.version, LGABENCH_VERSION))
     throw InputError(fmt::format("{}: a run of lgabench {}, and this is {}, which computes other cells: {} it with {}",
                                  run.string(), record.version, LGABENCH_VERSION, verb, record.version));
+  return record;
 }
 
 RunPlan plan_again(const fs::path& run, const RunRecord& record, std::vector<Cell> cells, int jobs, double timeout_s) {
@@ -57,7 +72,7 @@ RunPlan plan_again(const fs::path& run, const RunRecord& record, std::vector<Cel
     plan.live.emplace().cassette = replies->path;
     plan.live->asks = false;
   }
-  plan.pool.jobs = jobs != 0 ? jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  plan.pool.jobs = jobs_of(jobs);
   plan.pool.timeout_s = timeout_s;
   return plan;
 }

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/cli/outcome.hpp>
+#include <lgabench/cli/verbs.hpp>
 #include <lgabench/harness/run_suite.hpp>
 
 namespace lgabench::cli {
@@ -21,8 +23,23 @@ struct Inventory {
 };
 Inventory take_stock(const fs::path& run, const RunRecord& record);
 
-/// @throws InputError for a run of a version that computes other cells, and says to `verb` it with that.
-void expect_same_version(const fs::path& run, const RunRecord& record, const std::string& verb);
+/// The run of a command that computes its cells again, and with what.
+struct RecomputeArguments {
+  fs::path run;
+  int jobs = 0;  // 0: as many as there are cores
+  double timeout_s = 3600;
+  Words methods;
+  std::vector<fs::path> plugin_path;
+  std::string python = "python3";
+
+  /// The plugins. @throws PluginError
+  Catalogue catalogue() const;
+};
+/// --methods and --python.
+void add_methods_in_python(Verb& verb, RecomputeArguments& a);
+
+/// @throws InputError where no run is, and for one of a version that computes other cells; says to `verb` it with that.
+RunRecord record_to_recompute(const fs::path& run, const std::string& verb);
 
 /// For recompute(): the cells with the run's answers; no server is asked. @throws InputError where these are not kept
 /// with the run.

@@ -8,7 +8,6 @@
 #include <lgabench/cell/picture.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/gallery.hpp>
-#include <lgabench/cli/help.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
@@ -82,54 +81,39 @@ void render(const RenderArguments& arguments) {
 
 void add_render(CLI::App& app, int&) {
   auto arguments = std::make_shared<RenderArguments>();
-  CLI::App* verb = app.add_subcommand("render", worker_summary("render"));
+  Verb verb(app, "render", worker_summary("render"));
   std::vector<std::string> galleries{"objects", "textures", "scenes", "words", "perturbations"};
   for (const std::string& id : environment_ids()) galleries.push_back(id);
-  auto* scenario = verb->add_option("scenario", arguments->scenario, "A scenario's id");
-  verb->add_option("--gallery", arguments->gallery,
-                   "Draw one sheet instead: all objects, all textures, or a scene of every scenario (words: of the "
-                   "suite words; perturbations: one along each axis; or of those of one environment); or the objects "
-                   "of a file, a list of {\"scenario\", \"object_type\", \"texture\"}")
-      ->check([known = one_of("gallery", galleries)](std::string what) {
-        return fs::path(what).extension() == ".json" ? std::string() : known(what);
-      })
+  auto* scenario = verb.option("scenario SCENARIO", arguments->scenario, "A scenario's id");
+  verb.option("--out FILE", arguments->out, "The file for the picture (default: SCENARIO-INDEX.png or GALLERY.png)");
+  verb.below("What is drawn");
+  verb.option("--gallery objects|textures|scenes|words|perturbations|ENVIRONMENT|FILE.json", arguments->gallery,
+              "Draw one sheet instead: all objects, all textures, or a scene of every scenario (words: of the "
+              "suite words; perturbations: one along each axis; or of those of one environment); or the objects "
+              "of a file, a list of {\"scenario\", \"object_type\", \"texture\"}",
+              [known = one_of("gallery", galleries)](std::string what) {
+                return fs::path(what).extension() == ".json" ? std::string() : known(what);
+              })
       ->excludes(scenario);
-  verb->add_option("--cells", arguments->cells,
-                   "With --gallery: write the position of each picture on the sheet as JSON, and print nothing")
+  verb.option("--cells FILE", arguments->cells,
+              "With --gallery: write the position of each picture on the sheet as JSON, and print nothing")
       ->excludes(scenario);
-  verb->add_option("--index", arguments->index, "Number of the scene")
-      ->check(CLI::Range(0, 1000000000))
-      ->capture_default_str();
-  verb->add_option("--layout", arguments->layout,
-                   "How objects are placed: one of `lgabench list layouts --of SCENARIO` (default: the first)")
-      ->check(one_of("layout", installed_layouts()));
-  verb->add_option("--split", arguments->split, "Which set of scenes")
-      ->check(one_of("split", {"train", "dev", "test"}))
-      ->capture_default_str();
-  verb->add_option("--arm", arguments->arm,
-                   "An arm of the scenario's test (lgabench info SCENARIO), or train (default: its first arm)");
-  verb->add_option("--suite", arguments->suite,
-                   "Draw the scenario as this suite plays it: its arms; in a suite with variants, name the scenario "
-                   "SCENARIO_VARIANT");
-  verb->add_option("--truth", arguments->truth,
-                   "Which true distributions to use where released and printed ones differ")
-      ->check(one_of("truth", {"released", "printed"}))
-      ->capture_default_str();
-  verb->add_option("--seed", arguments->seed, "Seed of the scenes")->capture_default_str();
-  verb->add_option("--out", arguments->out, "The file for the picture (default: SCENARIO-INDEX.png or GALLERY.png)");
-  add_scenario_path(*verb);
-  arrange(*verb, "", {{"scenario", "SCENARIO"}, {"--out", "FILE"}});
-  arrange(*verb, "What is drawn",
-          {{"--gallery", "objects|textures|scenes|words|perturbations|ENVIRONMENT|FILE.json"},
-           {"--cells", "FILE"},
-           {"--index", "N"},
-           {"--layout", "LAYOUT"},
-           {"--split", "train|dev|test"},
-           {"--arm", "ARM"},
-           {"--suite", "SUITE"},
-           {"--truth", "released|printed"},
-           {"--seed", "N"},
-           {"--scenario-path", "DIR"}});
+  verb.option("--index N", arguments->index, "Number of the scene", CLI::Range(0, 1000000000), with_default);
+  verb.option("--layout LAYOUT", arguments->layout,
+              "How objects are placed: one of `lgabench list layouts --of SCENARIO` (default: the first)",
+              one_of("layout", installed_layouts()));
+  verb.option("--split train|dev|test", arguments->split, "Which set of scenes",
+              one_of("split", {"train", "dev", "test"}), with_default);
+  verb.option("--arm ARM", arguments->arm,
+              "An arm of the scenario's test (lgabench info SCENARIO), or train (default: its first arm)");
+  verb.option("--suite SUITE", arguments->suite,
+              "Draw the scenario as this suite plays it: its arms; in a suite with variants, name the scenario "
+              "SCENARIO_VARIANT");
+  verb.option("--truth released|printed", arguments->truth,
+              "Which true distributions to use where released and printed ones differ",
+              one_of("truth", {"released", "printed"}), with_default);
+  verb.option("--seed N", arguments->seed, "Seed of the scenes", with_default);
+  add_scenario_path(verb);
   verb->footer(
       "Draws the scene before the action; the mask is that of the command's true Selection.\nExample: lgabench render "
       "red_heart --index 3 --out scene.png\n         lgabench render --gallery objects --out objects.png");

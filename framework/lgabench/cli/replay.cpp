@@ -9,7 +9,6 @@
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/gif.hpp>
-#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/watched_world.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
@@ -229,15 +228,14 @@ void replay(const ReplayArguments& a) {
 
 void add_replay(CLI::App& app, int&) {
   auto a = std::make_shared<ReplayArguments>();
-  CLI::App* verb = app.add_subcommand("replay", worker_summary("replay"));
-  verb->add_option("run", a->run, "The run's directory")->required();
-  verb->add_option("episodes", a->episodes,
-                   "The cell's key or its first digits, the arm, and the scene's number; without an arm, the "
-                   "scenario's first arm. Several are drawn beside each other, after what each policy sees")
-      ->required();
-  verb->add_option("--out", a->out, "FILE.gif for an animation, FILE.png for a film strip")->required();
-  add_plugin_path(*verb, a->plugin_path);
-  arrange(*verb, "", {{"run", "RUN"}, {"episodes", "KEY/ARM/INDEX..."}, {"--out", "FILE"}, {"--plugin-path", "PATH"}});
+  Verb verb(app, "replay", worker_summary("replay"));
+  verb.option("run RUN", a->run, "The run's directory", required);
+  verb.option("episodes KEY/ARM/INDEX...", a->episodes,
+              "The cell's key or its first digits, the arm, and the scene's number; without an arm, the "
+              "scenario's first arm. Several are drawn beside each other, after what each policy sees",
+              required);
+  verb.option("--out FILE", a->out, "FILE.gif for an animation, FILE.png for a film strip", required);
+  add_plugin_path(verb, a->plugin_path);
   verb->footer(
       "Carries out the recorded action on the recorded engine, without the method. Pink marks where the suction cup "
       "holds, or the spatula. Several episodes are slowed down.\nExample: lgabench replay runs/q1 752bdc8e/test/3 "

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/files.hpp>
@@ -107,47 +106,33 @@ void add_report(CLI::App& app, int& exit) {
     report::PoseTolerance tolerance;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand(
-      "report", "Make a run's tables, figures and report.html anew from its cells, and print the tables");
-  verb->add_option("RUN", options->runs,
-                   "The run's directory; given several, such as runs/*, it also writes a page that compares them")
-      ->required();
-  verb->add_option("--index", options->index, "Where to write that page (default: index.html beside the first run)");
-  verb->add_option("--format", options->format, "What to print; latex is every table")
-      ->check(one_of("format", {"text", "md", "latex", "json", "csv"}))
-      ->capture_default_str();
-  CLI::Option* const claims = verb->add_flag("--claims", options->claims,
-                                             "Test the suite's own claims, or else the paper's, instead of printing "
-                                             "tables (text or json); exit 1 if one is reversed");
-  verb->add_option("--difference", options->difference,
-                   "Test row A against row B, paired, instead of printing tables (text or json); exit 1 if B is "
-                   "above A beyond chance")
-      ->delimiter(',')
+  Verb verb(app, "report", "Make a run's tables, figures and report.html anew from its cells, and print the tables");
+  verb.option("RUN", options->runs,
+              "The run's directory; given several, such as runs/*, it also writes a page that compares them", required);
+  verb.option("--index FILE.html", options->index,
+              "Where to write that page (default: index.html beside the first run)");
+  verb.option("--format text|md|latex|json|csv", options->format, "What to print; latex is every table",
+              one_of("format", {"text", "md", "latex", "json", "csv"}), with_default);
+  auto* claims = verb.option("--claims", options->claims,
+                             "Test the suite's own claims, or else the paper's, instead of printing "
+                             "tables (text or json); exit 1 if one is reversed");
+  verb.option("--difference A,B", options->difference,
+              "Test row A against row B, paired, instead of printing tables (text or json); exit 1 if B is "
+              "above A beyond chance")
       ->expected(2)
       ->excludes(claims);
-  verb->add_option("--judge", options->judge,
-                   "How to judge episodes: physics, as they were played; or pose, which counts an action as a success "
-                   "if it is the oracle's up to --within, and only prints, writing no files")
-      ->check(one_of("judge", {"physics", "pose"}))
-      ->capture_default_str();
-  CLI::Option* const within_m =
-      verb->add_option_function<std::vector<double>>(
-              "--within",
-              [options](const std::vector<double>& metres) {
-                options->tolerance.begin_m = metres.at(0);
-                options->tolerance.end_m = metres.at(1);
-              },
-              "With --judge pose: how many metres apart the two actions may begin and end [0.07,0.10]")
-          ->delimiter(',')
-          ->expected(2)
-          ->check(within(0, 10));
-  arrange(*verb, "",
-          {{"RUN", "RUN"},
-           {"--index", "FILE.html"},
-           {"--format", "text|md|latex|json|csv"},
-           {"--difference", "A,B"},
-           {"--judge", "physics|pose"},
-           {"--within", "BEGIN,END"}});
+  verb.option("--judge physics|pose", options->judge,
+              "How to judge episodes: physics, as they were played; or pose, which counts an action as a success "
+              "if it is the oracle's up to --within, and only prints, writing no files",
+              one_of("judge", {"physics", "pose"}), with_default);
+  const std::function<void(const std::vector<double>&)> tolerate = [options](const std::vector<double>& metres) {
+    options->tolerance.begin_m = metres.at(0);
+    options->tolerance.end_m = metres.at(1);
+  };
+  auto* within_m = verb.option("--within BEGIN,END", tolerate,
+                               "With --judge pose: how many metres apart the two actions may begin and end [0.07,0.10]",
+                               within(0, 10))
+                       ->expected(2);
   verb->footer(
       "Writes RUN/report.html (one page that needs no other file), report.md, summary.json, summary.csv,\n"
       "episodes.csv, claims.json, each figure as SVG and PDF (figures/), each table as LaTeX and CSV (tables/).\n"

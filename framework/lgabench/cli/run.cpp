@@ -7,7 +7,6 @@
 #include <set>
 
 #include <lgabench/cli/causes.hpp>
-#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/run_plan.hpp>
 #include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -158,8 +157,8 @@ int run(const RunArguments& a) {
 
 void add_run(CLI::App& app, int& exit) {
   auto a = std::make_shared<RunArguments>();
-  CLI::App* verb = app.add_subcommand("run", "Compute a suite's cells and print their means");
-  add_run_options(*verb, *a);
+  Verb verb(app, "run", "Compute a suite's cells and print their means");
+  add_run_options(verb, *a);
   verb->footer(
       "Examples\n"
       "  lgabench run q1 --preset smoke                                        a first look\n"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <set>
-#include <thread>
 
 #include <lgabench/abstraction/asked_model.hpp>
 #include <lgabench/abstraction/cassette.hpp>
@@ -12,7 +11,6 @@
 #include <lgabench/abstraction/prompt.hpp>
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/cli/cache.hpp>
-#include <lgabench/cli/help.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -248,7 +246,7 @@ PlannedRun plan_run(RunArguments a) {
   }
   plan.cache = a.cache.empty() ? default_cache() : fs::path(a.cache);
   plan.existing = a.fresh ? Existing::fresh : a.resume ? Existing::resume : Existing::same;
-  plan.pool.jobs = a.jobs != 0 ? a.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  plan.pool.jobs = jobs_of(a.jobs);
   plan.pool.timeout_s = a.timeout_s;
   plan.pool.memory_gib = a.memory_gib;
   plan.confined = !a.unconfined;
@@ -258,158 +256,107 @@ PlannedRun plan_run(RunArguments a) {
   return planned;
 }
 
-void add_run_options(CLI::App& verb, RunArguments& a) {
-  const auto list = [&verb](const char* name, Words& words, const char* help) {
-    verb.add_option(name, words, help)->delimiter(',')->take_all();
-  };
-  verb.add_option("suite", a.suite, "A suite's id, or a .json file of one")->required();
-  verb.add_option(
-      "--preset", a.preset,
-      "One of the suite's presets, which `lgabench list presets --of SUITE` prints; paper: the suite as it is");
-  list("--methods", a.methods,
-       "Methods, by plugin id or as FILE.py:Class; ID+OPTION=VALUE+OPTION=VALUE for a variant; selected_by:METHOD to "
-       "use only METHOD's Selections, while the shipped lga+policy=heat_map learns and acts");
-  list("--engines", a.engines, "Engines, by plugin id");
-  list("--scenarios", a.scenarios, "Scenarios");
-  list("--layout", a.layouts,
-       "How objects are placed: `lgabench list layouts --of SUITE`; separate several with commas");
-  list("--demos", a.demonstrations, "Numbers of demonstrations per seen command, such as 10,20");
-  list("--seeds", a.seeds, "Training seeds, such as 0,1,2 or 0:3");
-  list("--selection-errors", a.selection_errors,
-       "Errors to make in what methods select: missing=P drops each true feature with probability P, added=P adds each "
-       "wrong one, added=P+missing=P does both; none");
-  verb.add_option("--train-on", a.train_on,
-                  "Show methods their demonstrations through a perturbation axis: AXIS:LEVEL, or AXIS:any for a level "
-                  "drawn for each demonstration; not for the leaderboard");
-  verb.add_option("--episodes", a.episodes, "Test scenes per arm");
-  verb.add_option("--scene-seed", a.scene_seed,
-                  "Draw other test scenes, from this seed; demonstrations follow --seeds. Not for presets of the "
-                  "leaderboard");
-  verb.add_option("--jobs", a.jobs, "Cells to compute at once (default: one per core)")->check(CLI::Range(1, 4096));
-  verb.add_option("--timeout", a.timeout_s, "Seconds after which a cell is stopped and counts as failed")
-      ->check(within(1, 1e7))
-      ->capture_default_str();
-  verb.add_option("--memory", a.memory_gib,
-                  "Memory limit of a cell, in GiB (default: its share of the machine's memory, at least 4)")
-      ->check(within(.1, 1e6));
-  verb.add_option("--python", a.python, "The interpreter for plugins in Python")->capture_default_str();
-  verb.add_option("--shard", a.shard, "Compute only part I of N of the cells; lgabench merge combines the parts");
+void add_run_options(Verb& verb, RunArguments& a) {
+  verb.option("suite SUITE", a.suite, "A suite's id, or a .json file of one", required);
+  verb.below("What is computed");
+  verb.option("--preset PRESET", a.preset,
+              "One of the suite's presets, which `lgabench list presets --of SUITE` prints; paper: the suite as it is");
+  verb.option(
+      "--methods METHOD,...", a.methods,
+      "Methods, by plugin id or as FILE.py:Class; ID+OPTION=VALUE+OPTION=VALUE for a variant; selected_by:METHOD to "
+      "use only METHOD's Selections, while the shipped lga+policy=heat_map learns and acts");
+  verb.option("--engines ENGINE,...", a.engines, "Engines, by plugin id");
+  verb.option("--scenarios SCENARIO,...", a.scenarios, "Scenarios");
+  verb.option("--layout LAYOUT,...", a.layouts,
+              "How objects are placed: `lgabench list layouts --of SUITE`; separate several with commas", rare);
+  verb.option("--demos N,...", a.demonstrations, "Numbers of demonstrations per seen command, such as 10,20");
+  verb.option("--seeds N,...", a.seeds, "Training seeds, such as 0,1,2 or 0:3");
+  verb.option(
+      "--selection-errors KIND=P,...", a.selection_errors,
+      "Errors to make in what methods select: missing=P drops each true feature with probability P, added=P adds each "
+      "wrong one, added=P+missing=P does both; none",
+      rare);
+  verb.option("--train-on AXIS", a.train_on,
+              "Show methods their demonstrations through a perturbation axis: AXIS:LEVEL, or AXIS:any for a level "
+              "drawn for each demonstration; not for the leaderboard",
+              rare);
+  verb.option("--episodes N", a.episodes, "Test scenes per arm");
+  verb.option("--scene-seed N", a.scene_seed,
+              "Draw other test scenes, from this seed; demonstrations follow --seeds. Not for presets of the "
+              "leaderboard",
+              rare);
+  verb.option("--set M.OPTION=VALUE", a.settings,
+              "METHOD.OPTION=VALUE, or *.OPTION=VALUE for every method that has the option; overrides the preset's, "
+              "not a row's own; can be repeated");
+  verb.option(
+      "--answers SOURCE", a.answers,
+      "Where a language model's answers come from. recorded: each scenario's recorded answers (lgabench "
+      "info SCENARIO); another name from lgabench list sources: only that source; cassette:FILE: a "
+      "server's replies, recorded by lgabench select --suite; FILE.json: your own answers (docs/formats); "
+      "openai: a server, asked during the run; none: no answers, for methods that ask no language model",
+      [](const std::string& word) { return answers_complaint(word, true); }, with_default);
+  verb.option("--model MODEL", a.model, "With --answers openai: the server's model", rare);
+  verb.option("--cassette FILE", a.cassette,
+              "With --answers openai: the file to append replies to; runs may share it, and questions that it "
+              "answers are not asked again",
+              rare);
+  verb.option("--max-queries N", a.max_queries,
+              "With --answers openai: the most questions that a cell may ask the server; -1: no limit",
+              CLI::Range(-1, 1000000), with_default, rare);
+  add_server(verb, a.request, a.reply_timeout_s, rare);
+  verb.option("--concurrency N", a.concurrency, "With --answers openai: how many questions to ask at once",
+              CLI::Range(1, 64), with_default, rare);
+  verb.option("--truth released|printed", a.truth,
+              "Which true distributions to use where they differ: those released with the paper's code, or those "
+              "printed in its appendix",
+              one_of("truth", {"released", "printed"}), with_default, rare);
+  verb.option("--humans DIR", a.humans,
+              "A directory of participants' .json files; methods that ask people then get a cell for each participant",
+              rare);
+  verb.option("--rehearsal", a.rehearsal,
+              "With --humans: accept files from a rehearsal or from simulated people; the run, its tables and claims "
+              "are marked, and the leaderboard does not take it",
+              rare);
+  verb.option("--no-reference", a.no_reference,
+              "Leave out the reference rows: those of every suite, and the suite's own (lgabench list rows)", rare);
+  verb.below("How cells are computed");
+  add_pool(verb, a.jobs, a.timeout_s, rare);
+  verb.option("--memory GIB", a.memory_gib,
+              "Memory limit of a cell, in GiB (default: its share of the machine's memory, at least 4)",
+              within(.1, 1e6), rare);
+  add_python(verb, a.python, rare);
   add_plugin_path(verb, a.plugin_path, any_plugin);
   add_scenario_path(verb);
-  verb.add_option("--out", a.out, "Run directory (default: runs/SUITE-PRESET-HASH, with -IofN appended for a shard)");
-  verb.add_option("--cache", a.cache,
-                  "Where demonstrations are kept (default: $LGABENCH_CACHE, else ~/.cache/lgabench)");
-  auto* resume = verb.add_flag("--resume", a.resume,
-                               "Continue the run in --out or, without --out, the earlier run of the same command; "
-                               "recompute cells of another build");
-  verb.add_flag("--fresh", a.fresh, "Delete the run in --out first")->excludes(resume);
-  verb.add_option("--limit", a.limit, "Compute only the first N cells; not for the leaderboard")
-      ->check(CLI::Range(1, 1 << 30));
-  verb.add_option(
-          "--set", a.settings,
-          "METHOD.OPTION=VALUE, or *.OPTION=VALUE for every method that has the option; overrides the preset's, "
-          "not a row's own; can be repeated")
-      ->take_all();
-  verb.add_option("--answers", a.answers,
-                  "Where a language model's answers come from. recorded: each scenario's recorded answers (lgabench "
-                  "info SCENARIO); another name from lgabench list sources: only that source; cassette:FILE: a "
-                  "server's replies, recorded by lgabench select --suite; FILE.json: your own answers (docs/formats); "
-                  "openai: a server, asked during the run; none: no answers, for methods that ask no language model")
-      ->check([](const std::string& word) { return answers_complaint(word, true); })
-      ->capture_default_str();
-  verb.add_option("--model", a.model, "With --answers openai: the server's model");
-  verb.add_option("--cassette", a.cassette,
-                  "With --answers openai: the file to append replies to; runs may share it, and questions that it "
-                  "answers are not asked again");
-  verb.add_option("--max-queries", a.max_queries,
-                  "With --answers openai: the most questions that a cell may ask the server; -1: no limit")
-      ->check(CLI::Range(-1, 1000000))
-      ->capture_default_str();
-  verb.add_option("--request", a.request,
-                  "With --answers openai: a JSON merge patch applied to each request; null removes a field: "
-                  "'{\"temperature\": null, \"reasoning_effort\": \"low\"}'");
-  add_ca_file(verb);
-  verb.add_option("--reply-timeout", a.reply_timeout_s, "With --answers openai: seconds to wait for a reply")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  verb.add_option("--concurrency", a.concurrency, "With --answers openai: how many questions to ask at once")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
-  verb.add_option("--truth", a.truth,
-                  "Which true distributions to use where they differ: those released with the paper's code, or those "
-                  "printed in its appendix")
-      ->check(one_of("truth", {"released", "printed"}))
-      ->capture_default_str();
-  verb.add_option(
-      "--humans", a.humans,
-      "A directory of participants' .json files; methods that ask people then get a cell for each participant");
-  verb.add_flag("--rehearsal", a.rehearsal,
-                "With --humans: accept files from a rehearsal or from simulated people; the run, its tables and claims "
-                "are marked, and the leaderboard does not take it");
-  verb.add_flag("--keep-policy", a.keep_policy,
-                "Keep what each computed cell learned, as its file policy.bin, which lgabench.load_policy() of the "
-                "Python package acts with; a method that cannot be saved says so in its cell's log");
-  verb.add_flag("--unconfined", a.unconfined,
-                "Do not confine methods: they then run as you, with access to your files (docs/trust.md); not for the "
-                "leaderboard");
-  verb.add_option(
-          "--debug", a.debug,
-          "Compute one cell in the foreground and unconfined: a plugin under gdb, Python with breakpoint() working; "
-          "results are not kept. KEY: the first digits of the cell's key (--debug list prints all keys)")
-      ->type_name("KEY");
-  verb.add_flag("--no-reference", a.no_reference,
-                "Leave out the reference rows: those of every suite, and the suite's own (lgabench list rows)");
-  CLI::Option* const json = verb.add_flag("--json", a.json, "Print summary.json instead of the means");
-  verb.add_flag("--tables", a.tables, "Print every table of the report instead of the means")->excludes(json);
-  verb.add_flag("--quiet", a.quiet, "Print no progress, and of the means the table alone");
-  verb.add_flag("--dry-run", a.dry_run,
-                "Compute nothing; print the number of cells, and the time and disk space that they would take");
-  arrange(verb, "", {{"suite", "SUITE"}});
-  arrange(verb, "What is computed",
-          {{"--preset", "PRESET"},
-           {"--methods", "METHOD,..."},
-           {"--engines", "ENGINE,..."},
-           {"--scenarios", "SCENARIO,..."},
-           {"--layout", "LAYOUT,..."},
-           {"--demos", "N,..."},
-           {"--seeds", "N,..."},
-           {"--selection-errors", "KIND=P,..."},
-           {"--train-on", "AXIS"},
-           {"--episodes", "N"},
-           {"--scene-seed", "N"},
-           {"--set", "M.OPTION=VALUE"},
-           {"--answers", "SOURCE"},
-           {"--model", "MODEL"},
-           {"--cassette", "FILE"},
-           {"--max-queries", "N"},
-           {"--request", "JSON"},
-           {"--reply-timeout", "SECONDS"},
-           {"--ca-file", "FILE"},
-           {"--concurrency", "N"},
-           {"--truth", "released|printed"},
-           {"--humans", "DIR"},
-           {"--rehearsal", ""},
-           {"--no-reference", ""}});
-  arrange(
-      verb, "How much is computed",
-      {{"--dry-run", ""}, {"--limit", "N"}, {"--shard", "I/N"}, {"--resume", ""}, {"--fresh", ""}, {"--debug", "KEY"}});
-  arrange(verb, "How cells are computed",
-          {{"--jobs", "N"},
-           {"--timeout", "SECONDS"},
-           {"--memory", "GIB"},
-           {"--plugin-path", "PATH"},
-           {"--scenario-path", "DIR"},
-           {"--python", "PROGRAM"},
-           {"--unconfined", ""}});
-  arrange(
-      verb, "Output",
-      {{"--out", "DIR"}, {"--tables", ""}, {"--quiet", ""}, {"--json", ""}, {"--cache", "DIR"}, {"--keep-policy", ""}});
-  leave_to_help_all(
-      verb, {"--layout",      "--scene-seed", "--selection-errors", "--train-on", "--model",       "--cassette",
-             "--max-queries", "--request",    "--reply-timeout",    "--ca-file",  "--concurrency", "--truth",
-             "--humans",      "--memory",     "--rehearsal",        "--limit",    "--shard",       "--debug",
-             "--timeout",     "--python",     "--no-reference",     "--fresh",    "--cache",       "--keep-policy",
-             "--unconfined"});
+  verb.option("--unconfined", a.unconfined,
+              "Do not confine methods: they then run as you, with access to your files (docs/trust.md); not for the "
+              "leaderboard",
+              rare);
+  verb.below("How much is computed");
+  verb.option("--shard I/N", a.shard, "Compute only part I of N of the cells; lgabench merge combines the parts", rare);
+  auto* resume = verb.option("--resume", a.resume,
+                             "Continue the run in --out or, without --out, the earlier run of the same command; "
+                             "recompute cells of another build");
+  verb.option("--fresh", a.fresh, "Delete the run in --out first", rare)->excludes(resume);
+  verb.option("--limit N", a.limit, "Compute only the first N cells; not for the leaderboard", CLI::Range(1, 1 << 30),
+              rare);
+  verb.option(
+      "--debug KEY", a.debug,
+      "Compute one cell in the foreground and unconfined: a plugin under gdb, Python with breakpoint() working; "
+      "results are not kept. KEY: the first digits of the cell's key (--debug list prints all keys)",
+      rare);
+  verb.option("--dry-run", a.dry_run,
+              "Compute nothing; print the number of cells, and the time and disk space that they would take");
+  verb.below("Output");
+  verb.option("--out DIR", a.out, "Run directory (default: runs/SUITE-PRESET-HASH, with -IofN appended for a shard)");
+  verb.option("--cache DIR", a.cache,
+              "Where demonstrations are kept (default: $LGABENCH_CACHE, else ~/.cache/lgabench)", rare);
+  verb.option("--keep-policy", a.keep_policy,
+              "Keep what each computed cell learned, as its file policy.bin, which lgabench.load_policy() of the "
+              "Python package acts with; a method that cannot be saved says so in its cell's log",
+              rare);
+  auto* json = verb.option("--json", a.json, "Print summary.json instead of the means");
+  verb.option("--tables", a.tables, "Print every table of the report instead of the means")->excludes(json);
+  verb.option("--quiet", a.quiet, "Print no progress, and of the means the table alone");
 }
 
 }  // namespace lgabench::cli

@@ -29,7 +29,7 @@ struct RunArguments {
 };
 
 /// The options of `run`. Its --help leaves out those that are rarely needed.
-void add_run_options(CLI::App& verb, RunArguments& a);
+void add_run_options(Verb& verb, RunArguments& a);
 
 /// The run, and the plugins that it uses. @throws InputError, or PluginError, for what the options do not make.
 struct PlannedRun {

@@ -16,7 +16,6 @@
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/abstraction/selection_text.hpp>
 #include <lgabench/cli/commands.hpp>
-#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/select_score.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/rounding.hpp>
@@ -226,80 +225,48 @@ void select(const Asked& asked, LanguageModel* answering, const SelectArguments&
 
 void add_select(CLI::App& app, int&) {
   auto arguments = std::make_shared<SelectArguments>();
-  CLI::App* verb = app.add_subcommand("select", worker_summary("select"));
-  auto* command = verb->add_option("command", arguments->command, "A scenario's id, or a command in quotes");
-  verb->add_option("--suite", arguments->suite, "Ask about every command of this suite's scenarios instead")
+  Verb verb(app, "select", worker_summary("select"));
+  auto* command = verb.option("command COMMAND", arguments->command, "A scenario's id, or a command in quotes");
+  verb.option("--json", arguments->json,
+              "Print one line of JSON per command, as in a cell's selection.json, or per row of --score");
+  verb.below("What is asked");
+  verb.option("--suite SUITE", arguments->suite, "Ask about every command of this suite's scenarios instead")
       ->excludes(command);
-  verb->add_option(
-          "--answers", arguments->answers,
-          "recorded: the scenario's recorded answers; another name from lgabench list sources: only that source; "
-          "openai: ask a server now; cassette:FILE: a server's recorded replies; FILE.json: your own answers; none "
-          "(with --score): the names in the commands alone")
-      ->check([](const std::string& word) { return answers_complaint(word, true); })
-      ->capture_default_str();
-  verb->add_option("--truth", arguments->truth,
-                   "Which true distribution to compare with where released and printed ones differ")
-      ->check(one_of("truth", {"released", "printed"}))
-      ->capture_default_str();
-  verb->add_option("--task", arguments->task, "The task, for a command in quotes")
-      ->check(one_of("task", installed_task_ids()))
-      ->capture_default_str();
-  verb->add_option("--space", arguments->space, "The feature space, for a command in quotes")->capture_default_str();
-  verb->add_option("--cassette", arguments->cassette,
-                   "With --answers openai: the file to append the server's replies to");
-  verb->add_option("--model", arguments->model,
-                   "The server's model; for a cassette, the model whose replies to use (default: its only one)");
-  verb->add_option("--concurrency", arguments->concurrency, "How many questions to ask at once")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
-  verb->add_option("--request", arguments->request,
-                   "With --answers openai: a JSON merge patch applied to each request; null removes a field: "
-                   "'{\"temperature\": null, \"reasoning_effort\": \"low\"}'");
-  add_ca_file(*verb);
-  verb->add_option("--reply-timeout", arguments->reply_timeout_s, "With --answers openai: seconds to wait for a reply")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  verb->add_option("--max-queries", arguments->max_queries, "The most questions to ask a server; -1: no limit")
-      ->check(CLI::Range(-1, 1000000))
-      ->capture_default_str();
-  add_scenario_path(*verb);
-  auto* score =
-      verb->add_flag("--score", arguments->score,
-                     "With --suite: no policy, but how exactly the answers keep what is meant in test scenes, "
-                     "asked yes or no of each feature, asked what the command means, and the names in it")
-          ->needs("--suite");
-  verb->add_option("--scenes", arguments->scenes, "With --score: test scenes of each arm")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str()
+  verb.option("--truth released|printed", arguments->truth,
+              "Which true distribution to compare with where released and printed ones differ",
+              one_of("truth", {"released", "printed"}), with_default);
+  verb.option(fmt::format("--task {}", fmt::join(installed_task_ids(), "|")), arguments->task,
+              "The task, for a command in quotes", one_of("task", installed_task_ids()), with_default);
+  verb.option("--space SPACE", arguments->space, "The feature space, for a command in quotes", with_default);
+  add_scenario_path(verb);
+  auto* score = verb.option("--score", arguments->score,
+                            "With --suite: no policy, but how exactly the answers keep what is meant in test scenes, "
+                            "asked yes or no of each feature, asked what the command means, and the names in it")
+                    ->needs("--suite");
+  verb.option("--scenes N", arguments->scenes, "With --score: test scenes of each arm", CLI::Range(1, 100000),
+              with_default)
       ->needs(score);
-  verb->add_option(
-          "--best-product", arguments->best_product,
-          "With --suite: write answers instead, of each command the product of types and textures that keeps "
-          "what is meant in most training scenes (found by ascent, from the truth): a reference for --answers FILE")
+  verb.option("--best-product FILE", arguments->best_product,
+              "With --suite: write answers instead, of each command the product of types and textures that keeps "
+              "what is meant in most training scenes (found by ascent, from the truth): a reference for --answers FILE")
       ->needs("--suite")
       ->excludes(score);
-  verb->add_flag("--json", arguments->json,
-                 "Print one line of JSON per command, as in a cell's selection.json, or per row of --score");
-  arrange(*verb, "", {{"command", "COMMAND"}});
-  const std::string tasks = fmt::format("{}", fmt::join(installed_task_ids(), "|"));
-  arrange(*verb, "What is asked",
-          {{"--suite", "SUITE"},
-           {"--task", tasks.c_str()},
-           {"--space", "SPACE"},
-           {"--truth", "released|printed"},
-           {"--score", ""},
-           {"--scenes", "N"},
-           {"--best-product", "FILE"},
-           {"--scenario-path", "DIR"}});
-  arrange(*verb, "Who answers",
-          {{"--answers", "SOURCE"},
-           {"--model", "MODEL"},
-           {"--cassette", "FILE"},
-           {"--concurrency", "N"},
-           {"--max-queries", "N"},
-           {"--request", "JSON"},
-           {"--reply-timeout", "SECONDS"},
-           {"--ca-file", "FILE"}});
+  verb.below("Who answers");
+  verb.option(
+      "--answers SOURCE", arguments->answers,
+      "recorded: the scenario's recorded answers; another name from lgabench list sources: only that source; "
+      "openai: ask a server now; cassette:FILE: a server's recorded replies; FILE.json: your own answers; none "
+      "(with --score): the names in the commands alone",
+      [](const std::string& word) { return answers_complaint(word, true); }, with_default);
+  verb.option("--cassette FILE", arguments->cassette,
+              "With --answers openai: the file to append the server's replies to");
+  verb.option("--model MODEL", arguments->model,
+              "The server's model; for a cassette, the model whose replies to use (default: its only one)");
+  verb.option("--concurrency N", arguments->concurrency, "How many questions to ask at once", CLI::Range(1, 64),
+              with_default);
+  add_server(verb, arguments->request, arguments->reply_timeout_s);
+  verb.option("--max-queries N", arguments->max_queries, "The most questions to ask a server; -1: no limit",
+              CLI::Range(-1, 1000000), with_default);
   verb->footer(
       "openai asks the server at OPENAI_BASE_URL (any with OpenAI's API) with the key in OPENAI_API_KEY: one question "
       "for each object type and texture. An interrupted command continues from the cassette.\nExample: lgabench select "

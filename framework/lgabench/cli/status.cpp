@@ -5,7 +5,6 @@
 #include <mutex>
 #include <set>
 
-#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/parallel.hpp>
@@ -136,10 +135,9 @@ void add_status(CLI::App& app, int& exit) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("status", "Show the progress of a run's parts, and which of them to run again");
-  verb->add_option("DIR", options->directories, "Runs, or directories whose subdirectories are runs")->required();
-  verb->add_flag("--json", options->json, "Print JSON instead of a table");
-  arrange(*verb, "", {{"DIR", "DIR"}});
+  Verb verb(app, "status", "Show the progress of a run's parts, and which of them to run again");
+  verb.option("DIR", options->directories, "Runs, or directories whose subdirectories are runs", required);
+  verb.option("--json", options->json, "Print JSON instead of a table");
   verb->footer(
       "Example: lgabench status runs/q1\nExit 0: all parts are complete or running. Exit 3: some must be run again; "
       "the --array that it prints lists them.");

@@ -163,59 +163,42 @@ int carry_out(const StudyArguments& a) {
 void add_study(CLI::App& app, int& exit) {
   auto a = std::make_shared<StudyArguments>();
   const std::vector<std::string> actions{"new", "check", "serve", "rehearse", "report"};
-  CLI::App* verb = app.add_subcommand("study", "Run a user study in a browser, for the rows Human and LGA-HILL");
-  verb->add_option("what", a->what,
-                   "new: write a protocol into DIR, to be filled in; check: say what is missing; serve: serve the "
-                   "pages of DIR's protocol; rehearse: let simulated people take part; report: show the results")
-      ->required()
-      ->check(one_of("action", actions));
-  verb->add_option("path", a->path, "The study's directory or its protocol; for report, the directory that serve wrote")
-      ->required();
-  verb->add_option("--out", a->out, "serve, rehearse: where to store answers; a study already there is continued");
-  verb->add_option(
-          "--protocol", a->protocol,
-          "new: the paper's study, one where nobody sees a command twice, or one that asks whether commands mean "
-          "the objects of disputed pairs")
-      ->check(one_of("protocol", {"paper", "crossover", "disputed"}))
-      ->capture_default_str();
-  verb->add_flag("--pin", a->pin,
-                 "check: fix the protocol: write the hashes of what must no longer change into a file beside it");
-  verb->add_option("--bind", a->bind, "serve: the address to listen on")->capture_default_str();
-  verb->add_option("--port", a->port, "serve: the port; 0: any free one")
-      ->check(CLI::Range(0, 65535))
-      ->capture_default_str();
-  verb->add_flag("--behind-tls-proxy", a->behind_tls_proxy, "serve: this server is behind a proxy that does TLS");
-  verb->add_option("--host", a->host, "serve: the host name (and port) of that proxy");
-  verb->add_option(
-          "--invitation", a->invitation,
-          "serve: letters and digits of your choice; only people who open the link that contains them can begin")
-      ->check([](const std::string& text) {
-        return is_word(text) ? std::string() : "expected letters and digits, got \"" + text + "\"";
-      });
-  verb->add_option("--begins", a->begins, "serve: how many people may begin per minute")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  verb->add_option("--people", a->people, "rehearse: how many simulated people take part")
-      ->check(CLI::Range(1, 10000))
-      ->capture_default_str();
-  verb->add_flag(
-      "--rehearsal", a->rehearsal,
-      "serve: try the study out, without a pin; its answers are marked, and no tool takes them for people's");
-  arrange(*verb, "", {{"what", "new|check|serve|rehearse|report"}, {"path", "DIR"}, {"--out", "DIR"}});
-  arrange(*verb, "The protocol", {{"--protocol", "paper|crossover|disputed"}, {"--pin", ""}});
-  arrange(*verb, "The server",
-          {{"--bind", "ADDRESS"},
-           {"--port", "N"},
-           {"--behind-tls-proxy", ""},
-           {"--host", "NAME"},
-           {"--invitation", "CODE"},
-           {"--begins", "N"},
-           {"--rehearsal", ""}});
-  arrange(*verb, "Simulated people", {{"--people", "N"}});
+  Verb verb(app, "study", "Run a user study in a browser, for the rows Human and LGA-HILL");
+  verb.option("what new|check|serve|rehearse|report", a->what,
+              "new: write a protocol into DIR, to be filled in; check: say what is missing; serve: serve the "
+              "pages of DIR's protocol; rehearse: let simulated people take part; report: show the results",
+              required, one_of("action", actions));
+  verb.option("path DIR", a->path, "The study's directory or its protocol; for report, the directory that serve wrote",
+              required);
+  verb.option("--out DIR", a->out, "serve, rehearse: where to store answers; a study already there is continued");
+  verb.below("The protocol");
+  verb.option("--protocol paper|crossover|disputed", a->protocol,
+              "new: the paper's study, one where nobody sees a command twice, or one that asks whether commands mean "
+              "the objects of disputed pairs",
+              one_of("protocol", {"paper", "crossover", "disputed"}), with_default);
+  verb.option("--pin", a->pin,
+              "check: fix the protocol: write the hashes of what must no longer change into a file beside it");
+  verb.below("The server");
+  verb.option("--bind ADDRESS", a->bind, "serve: the address to listen on", with_default);
+  verb.option("--port N", a->port, "serve: the port; 0: any free one", CLI::Range(0, 65535), with_default);
+  verb.option("--behind-tls-proxy", a->behind_tls_proxy, "serve: this server is behind a proxy that does TLS");
+  verb.option("--host NAME", a->host, "serve: the host name (and port) of that proxy");
+  verb.option("--invitation CODE", a->invitation,
+              "serve: letters and digits of your choice; only people who open the link that contains them can begin",
+              [](const std::string& text) {
+                return is_word(text) ? std::string() : "expected letters and digits, got \"" + text + "\"";
+              });
+  verb.option("--begins N", a->begins, "serve: how many people may begin per minute", CLI::Range(1, 100000),
+              with_default);
+  verb.option("--rehearsal", a->rehearsal,
+              "serve: try the study out, without a pin; its answers are marked, and no tool takes them for people's");
+  verb.below("Simulated people");
+  verb.option("--people N", a->people, "rehearse: how many simulated people take part", CLI::Range(1, 10000),
+              with_default);
   verb->footer(
       "docs/study.md explains every step up to the first participant.\nExample: lgabench study new my_study\n         "
       "lgabench study serve my_study/protocol.json --out my_study/data");
-  verb->callback([a, actions, verb, &exit] {
+  verb->callback([a, actions, verb = verb.get(), &exit] {
     expect_options_of(*verb, a->what, actions);
     exit = carry_out(*a);
   });

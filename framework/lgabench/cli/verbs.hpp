@@ -4,10 +4,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
+#include <functional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
+#include <lgabench/cli/help.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/scenario_files.hpp>
@@ -99,39 +103,60 @@ inline std::string missing_plugin(const std::string& word) {
 }
 
 /// --plugin-path, as every verb has it.
-inline void add_plugin_path(CLI::App& verb, std::vector<fs::path>& paths,
+inline void add_plugin_path(Verb& verb, std::vector<fs::path>& paths,
                             const std::string& takes = "a directory or a .so file") {
-  verb.add_option("--plugin-path", paths, fmt::format("Also look for plugins here: {}; can be repeated", takes))
-      ->type_name("PATH")
-      ->check(CLI::Validator(
-          [](const std::string& word) {
-            const std::string missing = missing_plugin(word);
-            const bool several = !missing.empty() && missing.find(':') < missing.rfind(": ");
-            return missing + (several ? "; for several, repeat --plugin-path" : "");
-          },
-          "", ""))
-      ->allow_extra_args(false);
+  const auto there = [](const std::string& word) {
+    const std::string missing = missing_plugin(word);
+    const bool several = !missing.empty() && missing.find(':') < missing.rfind(": ");
+    return missing + (several ? "; for several, repeat --plugin-path" : "");
+  };
+  verb.option("--plugin-path PATH", paths, fmt::format("Also look for plugins here: {}; can be repeated", takes), there,
+              repeatable);
 }
 
-/// --ca-file, as every verb that asks a server has it: for its workers too, which read the variable.
-inline void add_ca_file(CLI::App& verb) {
-  verb.add_option_function<std::string>(
-          "--ca-file", [](const std::string& file) { ::setenv("SSL_CERT_FILE", fs::absolute(file).c_str(), 1); },
-          "With --answers openai: certificates (PEM) of the authorities to trust in place of this machine's; like "
-          "SSL_CERT_FILE")
-      ->check(CLI::ExistingFile);
+/// --jobs and --timeout, as every verb has them that computes cells of its own.
+template <class... More>
+void add_pool(Verb& verb, int& jobs, double& timeout_s, More... of_timeout) {
+  verb.option("--jobs N", jobs, "Cells to compute at once (default: one per core)", CLI::Range(1, 4096));
+  verb.option("--timeout SECONDS", timeout_s, "Seconds after which a cell is stopped and counts as failed",
+              within(1, 1e7), with_default, of_timeout...);
+}
+/// How many cells to compute at once, where --jobs is that; 0: as many as there are cores.
+inline int jobs_of(int asked) {
+  return asked != 0 ? asked : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+/// --python, as every verb has it that takes plugins in Python.
+template <class... More>
+void add_python(Verb& verb, std::string& python, More... more) {
+  verb.option("--python PROGRAM", python, "The interpreter for plugins in Python", with_default, more...);
+}
+
+/// How a server is asked. --ca-file is for the workers too, which read the variable.
+template <class... More>
+void add_server(Verb& verb, std::string& request, long& reply_timeout_s, More... more) {
+  verb.option("--request JSON", request,
+              "With --answers openai: a JSON merge patch applied to each request; null removes a field: "
+              "'{\"temperature\": null, \"reasoning_effort\": \"low\"}'",
+              more...);
+  const std::function<void(const std::string&)> trust = [](const std::string& file) {
+    ::setenv("SSL_CERT_FILE", fs::absolute(file).c_str(), 1);
+  };
+  verb.option("--ca-file FILE", trust,
+              "With --answers openai: certificates (PEM) of the authorities to trust in place of this machine's; like "
+              "SSL_CERT_FILE",
+              CLI::ExistingFile, more...);
+  verb.option("--reply-timeout SECONDS", reply_timeout_s, "With --answers openai: seconds to wait for a reply",
+              CLI::Range(1, 1000000), with_default, more...);
 }
 
 /// --scenario-path, as every verb that reads scenarios has it.
-inline void add_scenario_path(CLI::App& verb) {
-  verb.add_option_function<std::vector<fs::path>>(
-          "--scenario-path",
-          [](const std::vector<fs::path>& directories) {
-            for (const fs::path& directory : directories) lgabench::add_scenario_path(directory);
-          },
-          "Also look for scenarios here: a directory of .json files; can be repeated")
-      ->type_name("DIR")
-      ->allow_extra_args(false);
+inline void add_scenario_path(Verb& verb) {
+  const std::function<void(const std::vector<fs::path>&)> add = [](const std::vector<fs::path>& directories) {
+    for (const fs::path& directory : directories) lgabench::add_scenario_path(directory);
+  };
+  verb.option("--scenario-path DIR", add, "Also look for scenarios here: a directory of .json files; can be repeated",
+              repeatable);
 }
 
 /// Parses, runs the verb's callback, turns typed errors into one line on stderr and an exit status.

@@ -9,7 +9,6 @@
 #include <random>
 #include <set>
 
-#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/recorded_run.hpp>
 #include <lgabench/cli/verbs.hpp>
@@ -18,7 +17,6 @@
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/recompute.hpp>
 #include <lgabench/harness/run_suite.hpp>
-#include <lgabench/host/python_method.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/report/agreement.hpp>
 #include <lgabench/report/pairs.hpp>
@@ -26,15 +24,10 @@
 namespace lgabench::cli {
 namespace {
 
-struct VerifyArguments {
-  fs::path run;
-  int sample = 3, jobs = 0;  // jobs 0: as many as there are cores
+struct VerifyArguments : RecomputeArguments {
+  int sample = 3;
   std::optional<std::uint32_t> seed;
   bool all = false, strict = false, json = false;
-  double timeout_s = 3600;
-  std::vector<fs::path> plugin_path;
-  std::vector<std::string> methods;
-  std::string python = "python3";
 };
 
 std::vector<Recorded> sampled(std::vector<Recorded> cells, std::size_t wanted, std::uint32_t seed) {
@@ -188,9 +181,7 @@ void print_cells(const VerifyArguments& a, const Inventory& inventory, std::uint
 }
 
 int verify(const VerifyArguments& a) {
-  expect_run(a.run);
-  const RunRecord record = read_run_record(a.run);
-  expect_same_version(a.run, record, "verify");
+  const RunRecord record = record_to_recompute(a.run, "verify");
   const Inventory inventory = take_stock(a.run, record);
   for (const std::string& line : inventory.edited) to_stderr("edited: {}\n", one_line(line));
   if (inventory.cells.empty() && inventory.edited.empty())
@@ -207,9 +198,7 @@ int verify(const VerifyArguments& a) {
     for (std::size_t i = 0; i < cells.size(); ++i) present.push_back(with_present_data(cells[i], excuses[i]));
     RunPlan plan = plan_again(a.run, record, std::move(present), a.jobs, a.timeout_s);
     plan.command = "lgabench verify";
-    Catalogue catalogue = plugins_at(a.plugin_path, a.python);
-    for (const std::string& method : a.methods) with_python_method(method, a.python, catalogue);
-    const std::optional<Recomputed> recomputed = recompute(plan, catalogue);
+    const std::optional<Recomputed> recomputed = recompute(plan, a.catalogue());
     if (!recomputed) return interrupted;
 
     const std::string there = record.processor(), here = recomputed->record.processor();
@@ -233,28 +222,20 @@ int verify(const VerifyArguments& a) {
 
 void add_verify(CLI::App& app, int& exit) {
   auto a = std::make_shared<VerifyArguments>();
-  CLI::App* verb = app.add_subcommand(
-      "verify",
-      "Compute cells of a finished run again with this build, and say whether the results are the recorded ones");
-  verb->add_option("RUN", a->run, "The run's directory")->required();
-  auto* sample = verb->add_option("--sample", a->sample, "Number of cells, drawn at random")
-                     ->check(CLI::Range(1, 1 << 30))
-                     ->capture_default_str();
-  verb->add_option("--seed", a->seed, "Seed of that draw (default: a new one each time, which is printed)");
-  verb->add_flag("--all", a->all, "Every finished cell")->excludes(sample);
-  verb->add_flag("--strict", a->strict, "Demand the same bytes whatever build the record names: exit 1 instead of 5");
-  verb->add_option("--jobs", a->jobs, "Cells to compute at once (default: one per core)")->check(CLI::Range(1, 4096));
-  verb->add_option("--timeout", a->timeout_s, "Seconds after which a cell is stopped and counts as failed")
-      ->check(within(1, 1e7))
-      ->capture_default_str();
-  verb->add_option("--methods", a->methods, "Methods in Python, as FILE.py:Class; separate several with commas")
-      ->delimiter(',');
-  verb->add_option("--python", a->python, "The interpreter for plugins in Python")->capture_default_str();
-  add_plugin_path(*verb, a->plugin_path, any_plugin);
-  verb->add_flag("--json", a->json, "Print JSON instead of lines");
-  arrange(*verb, "", {{"RUN", "RUN"}, {"--methods", "FILE.py:CLASS,..."}, {"--python", "PROGRAM"}});
-  arrange(*verb, "Which cells", {{"--sample", "N"}, {"--seed", "N"}, {"--all", ""}});
-  arrange(*verb, "How they are computed and judged", {{"--strict", ""}, {"--jobs", "N"}, {"--timeout", "SECONDS"}});
+  Verb verb(app, "verify",
+            "Compute cells of a finished run again with this build, and say whether the results are the recorded ones");
+  verb.option("RUN", a->run, "The run's directory", required);
+  add_methods_in_python(verb, *a);
+  add_plugin_path(verb, a->plugin_path, any_plugin);
+  verb.option("--json", a->json, "Print JSON instead of lines");
+  verb.below("Which cells");
+  auto* sample =
+      verb.option("--sample N", a->sample, "Number of cells, drawn at random", CLI::Range(1, 1 << 30), with_default);
+  verb.option("--seed N", a->seed, "Seed of that draw (default: a new one each time, which is printed)");
+  verb.option("--all", a->all, "Every finished cell")->excludes(sample);
+  verb.below("How they are computed and judged");
+  verb.option("--strict", a->strict, "Demand the same bytes whatever build the record names: exit 1 instead of 5");
+  add_pool(verb, a->jobs, a->timeout_s);
   verb->footer(
       "Example: lgabench verify runs/q1 --sample 5\nSays of each cell: bit-identical, same outcomes, other outcomes, "
       "or differs. With the recorded build, processor and data the bytes must be the same. Where the record names "
