@@ -21,47 +21,39 @@ using report::reading;
 using report::Section;
 using report::Span;
 
-struct Scored {
-  const Entry* entry;
-  std::string label;
-};
-
-std::vector<Scored> scored_of(const NamedTable& table) {
-  std::vector<Scored> all;
-  const auto add = [&all](const std::vector<Standing>& standings, const std::vector<std::string>& labels,
-                          const std::vector<std::string>& policies) {
-    for (std::size_t i = 0; i < standings.size(); ++i)
-      if (!standings[i].entry->score.is_null()) all.push_back({standings[i].entry, labels[i] + ", " + policies[i]});
-  };
-  add(table.standings, table.labels, table.policies);
-  add(table.waiting, table.waiting_labels, table.waiting_policies);
-  std::stable_sort(all.begin(), all.end(), [](const Scored& a, const Scored& b) {
-    return scenes_exact(a.entry->score) > scenes_exact(b.entry->score);
+std::vector<const NamedStanding*> scored_of(const NamedTable& table) {
+  std::vector<const NamedStanding*> all;
+  for (const auto* standings : {&table.standings, &table.waiting})
+    for (const NamedStanding& s : *standings)
+      if (!s.entry->score.is_null()) all.push_back(&s);
+  std::stable_sort(all.begin(), all.end(), [](const auto* a, const auto* b) {
+    return scenes_exact(a->entry->score) > scenes_exact(b->entry->score);
   });
   return all;
 }
+
+Span name_of(const NamedStanding& s) { return Span(s.label + ", " + s.policy); }
 
 std::string share(const Json& of, const char* part, const char* whole) {
   return fixed(of.at(part).get<double>() / of.at(whole).get<double>());
 }
 
-Grid models_grid(const NamedTable& table, const std::vector<Scored>& all) {
+Grid models_grid(const NamedTable& table, const std::vector<const NamedStanding*>& all) {
   std::set<std::string> groups;
-  for (const Scored& one : all)
-    for (const auto& item : one.entry->score.at("groups").items())
+  for (const NamedStanding* one : all)
+    for (const auto& item : one->entry->score.at("groups").items())
       if (item.key() != "all") groups.insert(item.key());
-  Grid grid;
-  grid.name = table.setting.name() + "_answers";
-  grid.caption = title_of(table) + ", share of the scenes in which exactly what is meant is kept";
+  Grid grid =
+      grid_of(table, "_answers", title_of(table) + ", share of the scenes in which exactly what is meant is kept");
   grid.heads = {"entry", "model", "asked"};
   for (const std::string& group : groups) grid.heads.emplace_back(group);
   for (const char* head : {"all", "sets exact", "questions", "tokens", "played on", "known"})
     grid.heads.emplace_back(head);
   grid.align = "lll" + std::string(groups.size() + 4, 'r') + "ll";
-  for (const Scored& one : all) {
-    const Json& score = one.entry->score;
+  for (const NamedStanding* one : all) {
+    const Json& score = one->entry->score;
     const Json& sum = score.at("groups").at("all");
-    Grid::Row row{{}, {Span(one.label), Span(models_of(score)), Span(score.at("asked").get<std::string>())}, false};
+    Grid::Row row{{}, {name_of(*one), Span(models_of(score)), Span(score.at("asked").get<std::string>())}};
     for (const std::string& group : groups)
       row.cells.emplace_back(Span::number(
           score.at("groups").contains(group) ? share(score.at("groups").at(group), "exact_scenes", "scenes") : "–"));
@@ -71,8 +63,8 @@ Grid models_grid(const NamedTable& table, const std::vector<Scored>& all) {
     row.cells.emplace_back(Span::number(share(sum, "exact_sets", "commands")));
     for (const char* price : {"questions", "tokens"})
       row.cells.emplace_back(Span::number(std::to_string(score.at(price).get<long long>())));
-    row.cells.emplace_back(Span(one.entry->evidence.front().at("started").get<std::string>().substr(0, 10)));
-    row.cells.emplace_back(Span(one.entry->was_replayed() ? to_string(one.entry->tier()) : "not yet replayed"));
+    row.cells.emplace_back(Span(computed_on(*one->entry)));
+    row.cells.emplace_back(Span(one->entry->was_replayed() ? to_string(one->entry->tier()) : "not yet replayed"));
     grid.rows.push_back(std::move(row));
   }
   return grid;
@@ -87,20 +79,18 @@ std::string in_words(const Json& wrong) {
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
-std::optional<Grid> wrong_grid(const NamedTable& table, const std::vector<Scored>& all) {
-  Grid grid;
-  grid.name = table.setting.name() + "_wrong";
-  grid.caption = "What was wrong";
+std::optional<Grid> wrong_grid(const NamedTable& table, const std::vector<const NamedStanding*>& all) {
+  Grid grid = grid_of(table, "_wrong", "What was wrong");
   const Titles titles(table.setting.suite);
   grid.heads = {"entry", "asked", "scenario", "scenes exact", "wrong in the others"};
   grid.align = "lllrl";
-  for (const Scored& one : all) {
-    const Json& score = one.entry->score;
+  for (const NamedStanding* one : all) {
+    const Json& score = one->entry->score;
     if (score.at("asked") == "named") continue;  // nobody's mistakes
     for (const auto& [id, wrong] : score.at("wrong").items())
       grid.rows.push_back(
           {{},
-           {Span(one.label), Span(score.at("asked").get<std::string>()), Span(titles.scenario(id)),
+           {name_of(*one), Span(score.at("asked").get<std::string>()), Span(titles.scenario(id)),
             Span::number(fmt::format("{} of {}", wrong.at("exact_scenes").get<int>(), wrong.at("scenes").get<int>())),
             Span(in_words(wrong))},
            false});
@@ -112,7 +102,7 @@ std::optional<Grid> wrong_grid(const NamedTable& table, const std::vector<Scored
 }  // namespace
 
 std::optional<Section> answers_section(const NamedTable& table, const std::string& id) {
-  const std::vector<Scored> all = scored_of(table);
+  const std::vector<const NamedStanding*> all = scored_of(table);
   if (all.empty()) return {};
   Section section{id, "What the answers keep, without a policy"};
   section.add<Paragraph>(

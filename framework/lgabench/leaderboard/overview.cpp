@@ -70,11 +70,11 @@ std::optional<Grid> overview_grid(const Suites& suites, Ranking ranking) {
         Span head(Titles(suite).suite());
         head.title = report::about_suite(suite).question;
         grid.heads.emplace_back(std::move(head));
-        for (std::size_t i = 0; i < table.standings.size(); ++i) {
-          const Standing& s = table.standings[i];
-          Numbers& row = rows[{table.labels[i], table.policies[i], answers_label(*s.entry)}];
-          row.reference = s.entry->identity.row.is_reference();
-          if (row.cells.emplace(columns, number_cell(s, suite, first_row + i)).second) row.scores.push_back(s.score);
+        for (const NamedStanding& s : table.standings) {
+          Numbers& row = rows[{s.label, s.policy, answers_label(*s.entry)}];
+          row.reference = s.is_reference();
+          if (row.cells.emplace(columns, number_cell(s, suite, first_row + table.row(s))).second)
+            row.scores.push_back(s.score);
         }
         ++columns;
       }

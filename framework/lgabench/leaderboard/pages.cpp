@@ -30,19 +30,17 @@ using report::Span;
 
 // A ranking's rows.
 Grid short_grid(const NamedTable& table) {
-  Grid grid;
-  grid.name = table.setting.name();
-  grid.caption = title_of(table);
-  grid.heads = {"rank", "method", "policy", "success", "known", "by", "id"};
-  grid.align = "rllrlll";
-  for (std::size_t i = 0; i < table.standings.size(); ++i) {
-    const Standing& s = table.standings[i];
-    report::Spans success{Span::number(score_text(s))};
-    if (s.below_random) success.push_back(below_random_mark());
-    grid.rows.push_back({{},
-                         {rank_span(s), Span(table.labels[i]), Span(table.policies[i]), success,
-                          Span(tier_and_marks(s)), Span(s.entry->about.at("by").get<std::string>()), id_span(*s.entry)},
-                         s.entry->identity.row.is_reference()});
+  Grid grid = grid_of(table, "", title_of(table));
+  for (const NamedStanding& s : table.standings) {
+    add_row(grid, s);
+    put(grid, "rank", 'r', rank_span(s));
+    put(grid, "method", 'l', Span(s.label));
+    put(grid, "policy", 'l', Span(s.policy));
+    put(grid, "success", 'r', Span::number(score_text(s)));
+    if (s.below_random) grid.rows.back().cells.back().spans.push_back(below_random_mark());
+    put(grid, "known", 'l', Span(tier_and_marks(s)));
+    put(grid, "by", 'l', by_span(*s.entry));
+    put(grid, "id", 'l', id_span(*s.entry));
   }
   return grid;
 }
@@ -88,8 +86,7 @@ std::string csv_of(const Suites& suites) {
                 "lm_tokens", "learn_s", "tier",        "not_ranked",     "by"});
   for (const auto& suite : suites)
     for (const NamedTable& table : suite.second)
-      for (std::size_t i = 0; i < table.standings.size(); ++i) {
-        const Standing& s = table.standings[i];
+      for (const NamedStanding& s : table.standings) {
         const Identity& identity = s.entry->identity;
         const auto line = [&](const std::string& n, double success, bool all) {
           const auto when_all = [all](const std::string& value) { return all ? value : std::string(); };
@@ -99,7 +96,7 @@ std::string csv_of(const Suites& suites) {
                             std::to_string(identity.scene_seed),
                             s.entry->id(),
                             identity.row.own_name(),
-                            display_name(table.names[i]),
+                            display_name(s.name),
                             identity.row.version,
                             identity.engine,
                             to_string(identity.answers),

@@ -27,21 +27,12 @@ std::vector<std::string> arms_of(const Setting& setting) {
   return arms;
 }
 
-// A row's name, with its policy and answers where they are not the usual ones; reference rows slanted.
-Grid::Row named_row(const NamedTable& table, std::size_t i) {
-  const Entry& entry = *table.standings[i].entry;
-  const bool reference = entry.identity.row.is_reference();
-  return {{}, {Span(table.labels[i]), Span(table.policies[i]), Span(reference ? "" : answers_label(entry))}, reference};
-}
-
-Grid grid_of(const NamedTable& table, const std::string& name, std::string caption, std::vector<std::string> columns) {
-  Grid grid;
-  grid.name = table.setting.name() + "_" + name;
-  grid.caption = std::move(caption);
-  grid.heads = {"method", "policy", "answers"};
-  for (std::string& column : columns) grid.heads.emplace_back(std::move(column));
-  grid.align = "lll" + std::string(columns.size(), 'r');
-  return grid;
+// A row's name, with its policy and answers where they are not the usual ones.
+void add_named_row(Grid& grid, const NamedStanding& s) {
+  add_row(grid, s);
+  put(grid, "method", 'l', Span(s.label));
+  put(grid, "policy", 'l', Span(s.policy));
+  put(grid, "answers", 'l', Span(s.is_reference() ? "" : answers_label(*s.entry)));
 }
 
 double mean_of(const Rates& rates) {
@@ -56,16 +47,16 @@ double mean_of(const Rates& rates) {
 
 Grid along_demonstrations(const NamedTable& table, const std::string& arm) {
   const Setting& setting = table.setting;
-  std::vector<std::string> columns;
-  for (const int n : setting.demonstrations) columns.push_back(std::to_string(n));
-  Grid grid = grid_of(table, "demonstrations",
-                      fmt::format("Success in {}, by demonstrations", Titles(setting.suite).arm(arm)), columns);
-  for (std::size_t i = 0; i < table.standings.size(); ++i) grid.rows.push_back(named_row(table, i));
+  Grid grid = grid_of(table, "_demonstrations",
+                      fmt::format("Success in {}, by demonstrations", Titles(setting.suite).arm(arm)));
+  for (const NamedStanding& s : table.standings) add_named_row(grid, s);
   for (const int n : setting.demonstrations) {
     std::vector<Rates> rates;
     for (const Standing& s : table.standings) rates.push_back(rates_of(*s.entry, arm, n));
     const report::SharedResamples resamples(rates, setting.shared_scenes(),
                                             fmt::format("leaderboard/results/{}/{}/{}", hash(setting), arm, n));
+    grid.heads.emplace_back(std::to_string(n));
+    grid.align += 'r';
     for (std::size_t i = 0; i < rates.size(); ++i) {
       const report::Interval interval = resamples.interval(i);
       grid.rows[i].cells.emplace_back(Span::number(
@@ -77,13 +68,11 @@ Grid along_demonstrations(const NamedTable& table, const std::string& arm) {
 
 Grid by_arm(const NamedTable& table, const std::vector<std::string>& arms, int n) {
   const Titles titles(table.setting.suite);
-  std::vector<std::string> columns;
-  for (const std::string& arm : arms) columns.push_back(titles.arm(arm));
-  Grid grid = grid_of(table, "arms", fmt::format("Success in every arm, {} demonstrations", n), columns);
-  for (std::size_t i = 0; i < table.standings.size(); ++i) {
-    grid.rows.push_back(named_row(table, i));
+  Grid grid = grid_of(table, "_arms", fmt::format("Success in every arm, {} demonstrations", n));
+  for (const NamedStanding& s : table.standings) {
+    add_named_row(grid, s);
     for (const std::string& arm : arms)
-      grid.rows.back().cells.emplace_back(Span::number(fixed(mean_of(rates_of(*table.standings[i].entry, arm, n)))));
+      put(grid, titles.arm(arm), 'r', Span::number(fixed(mean_of(rates_of(*s.entry, arm, n)))));
   }
   return grid;
 }

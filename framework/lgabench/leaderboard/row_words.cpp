@@ -34,6 +34,8 @@ std::string replayed_on(const Entry& entry) {
   return last;
 }
 
+Span by_span(const Entry& entry) { return Span(entry.about.at("by").get<std::string>()); }
+
 Span id_span(const Entry& entry) {
   Span span = Span::link(entry.id(), (entry.place() / "entry.json").string());
   span.emphasis = report::Emphasis::code;
@@ -98,7 +100,7 @@ Span below_random_mark() {
   return span;
 }
 
-std::optional<Paragraph> below_random_note(const std::vector<Standing>& standings) {
+std::optional<Paragraph> below_random_note(const std::vector<NamedStanding>& standings) {
   if (std::none_of(standings.begin(), standings.end(), [](const Standing& s) { return s.below_random; })) return {};
   const Span mark = below_random_mark();
   return Paragraph{{mark, " " + mark.title + "."}};
@@ -106,18 +108,15 @@ std::optional<Paragraph> below_random_note(const std::vector<Standing>& standing
 
 std::optional<Grid> waiting_grid(const NamedTable& table) {
   if (table.waiting.empty()) return {};
-  Grid grid;
-  grid.name = table.setting.name() + "_waiting";
-  grid.caption = title_of(table) + ", not yet replayed";
-  grid.heads = {"not yet replayed", "policy", "claimed success", "known", "by", "id"};
-  grid.align = "llrlll";
-  for (std::size_t i = 0; i < table.waiting.size(); ++i) {
-    const Standing& s = table.waiting[i];
-    grid.rows.push_back(
-        {{},
-         {TableCell(Span(table.waiting_labels[i])), Span(table.waiting_policies[i]), Span::number(score_text(s.score)),
-          Span(tier_and_marks(s)), Span(s.entry->about.at("by").get<std::string>()), id_span(*s.entry)},
-         false});
+  Grid grid = grid_of(table, "_waiting", title_of(table) + ", not yet replayed");
+  for (const NamedStanding& s : table.waiting) {
+    add_row(grid, s);
+    put(grid, "not yet replayed", 'l', Span(s.label));
+    put(grid, "policy", 'l', Span(s.policy));
+    put(grid, "claimed success", 'r', Span::number(score_text(s.score)));
+    put(grid, "known", 'l', Span(tier_and_marks(s)));
+    put(grid, "by", 'l', by_span(*s.entry));
+    put(grid, "id", 'l', id_span(*s.entry));
   }
   return grid;
 }

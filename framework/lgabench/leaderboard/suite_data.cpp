@@ -84,14 +84,14 @@ Json suite_data(const std::vector<NamedTable>& tables, const BoardScenes& scenes
     settings.push_back(std::move(setting));
     tabs.push_back({{"title", capital(to_string(table.ranking))},
                     {"sections", Json::array({fmt::format("table{}", tabs.size() + 1)})}});
-    for (std::size_t i = 0; i < table.standings.size(); ++i) {
-      const Entry& entry = *table.standings[i].entry;
+    for (const NamedStanding& s : table.standings) {
+      const Entry& entry = *s.entry;
       Json failed = Json::array(), evidence = Json::array();
       for (std::size_t c = 0; c < entry.cells.size(); ++c)
         if (!entry.cells[c].failed.empty()) failed.push_back({c, entry.cells[c].failed});
       entries.push_back({{"table", settings.size() - 1},
-                         {"name", table.full_name(i)},
-                         {"row", report::display_name(table.names[i])},
+                         {"name", s.full_name()},
+                         {"row", report::display_name(s.name)},
                          {"id", entry.id()},
                          {"place", entry.place().string()},
                          {"learns", learns(entry.identity.row)},

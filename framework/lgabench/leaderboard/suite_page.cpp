@@ -39,17 +39,14 @@ constexpr std::size_t curves = 8;                 // more would hide each other
 
 std::string amount(double value) { return value == 0 ? "–" : fixed(value, value < 10 ? 1 : 0); }
 
-// Names of a table's rows: the id, and those options, at every row that has them, by which two rows of one method
+// The rows with their names: the id, and those options, at every row that has them, by which two rows of one method
 // differ (one row's default is another's variant); then what else tells them apart.
-struct Names {
-  std::vector<std::string> names, labels, policies;
-};
-Names names_of(const std::vector<Standing>& all, const Labels& words) {
+std::vector<NamedStanding> named(const std::vector<Standing>& standings, const Labels& words) {
   std::map<std::pair<std::string, std::string>, std::set<Json>> values;  // by id and option
-  for (const Standing& s : all)
+  for (const Standing& s : standings)
     for (const auto& [option, value] : s.entry->identity.row.options.items())
       values[{s.entry->identity.row.own_name(), option}].insert(value);
-  for (const Standing& s : all)  // an option that came later is not among a row's where it has its default
+  for (const Standing& s : standings)  // an option that came later is not among a row's where it has its default
     for (auto& [key, different] : values)
       if (key.first == s.entry->identity.row.own_name() && !s.entry->identity.row.options.contains(key.second))
         different.insert(Json());
@@ -57,54 +54,55 @@ Names names_of(const std::vector<Standing>& all, const Labels& words) {
   for (const auto& [key, different] : values)
     if (different.size() > 1) telling.insert(key.second);
   const std::vector<std::string> options(telling.begin(), telling.end());
-  std::vector<std::string> names, labels, policies;
+  std::vector<NamedStanding> all;
   std::map<std::string, int> times;
   std::map<std::pair<std::string, std::string>, int> labelled;
-  for (const Standing& s : all) {
+  for (const Standing& standing : standings) {
+    NamedStanding& s = all.emplace_back(NamedStanding{standing});
     const Identity& identity = s.entry->identity;
-    std::string name = identity.row.own_name();
+    s.name = identity.row.own_name();
     for (const auto& [option, value] : identity.row.options.items())
-      if (telling.count(option) > 0) name += fmt::format("+{}={}", option, option_text(value));
-    names.push_back(name);
-    ++times[name];
-    labels.push_back(label_of(words, *s.entry, options));
-    policies.push_back(policy_label(words, *s.entry));
+      if (telling.count(option) > 0) s.name += fmt::format("+{}={}", option, option_text(value));
+    ++times[s.name];
+    s.label = label_of(words, *s.entry, options);
+    s.policy = policy_label(words, *s.entry);
     // One model's answers to all commands, where "recorded" may be several models'.
     const auto* from = std::get_if<RecordedAnswers>(&identity.answers);
-    if (from && from->source != "recorded" && !identity.row.is_reference())
-      labels.back() += ", answers " + spaced(from->source);
-    ++labelled[{labels.back(), policies.back()}];
+    if (from && from->source != "recorded" && !s.is_reference()) s.label += ", answers " + spaced(from->source);
+    ++labelled[{s.label, s.policy}];
   }
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (times[names[i]] > 1) {
-      const Identity& identity = all[i].entry->identity;
-      names[i] +=
-          fmt::format("+version={}+answers={}+engine={}+id={}", identity.row.version,
-                      to_string(identity.answers).substr(0, 20), identity.engine, all[i].entry->id().substr(0, 6));
-    }
-  for (std::size_t i = 0; i < labels.size(); ++i)
-    if (labelled[{labels[i], policies[i]}] > 1)
-      labels[i] += fmt::format(", version {}, {}", all[i].entry->identity.row.version, all[i].entry->id().substr(0, 6));
-  return {names, labels, policies};
+  for (NamedStanding& s : all) {
+    const Identity& identity = s.entry->identity;
+    const std::string id = s.entry->id().substr(0, 6);
+    if (times[s.name] > 1)
+      s.name += fmt::format("+version={}+answers={}+engine={}+id={}", identity.row.version,
+                            to_string(identity.answers).substr(0, 20), identity.engine, id);
+    if (labelled[{s.label, s.policy}] > 1) s.label += fmt::format(", version {}, {}", identity.row.version, id);
+  }
+  return all;
 }
 
-// Whether each is the first of its method: the best, as rows stand by rank and success. Each file of answers that
-// somebody submits competes for itself.
-std::vector<bool> best_of(const std::vector<Standing>& all) {
+// The first row of a method is its best, as rows stand by rank and success. Each file of answers that somebody submits
+// competes for itself.
+void mark_more(std::vector<NamedStanding>& standings) {
   std::set<std::string> known;
-  std::vector<bool> best;
-  for (const Standing& s : all) {
+  for (NamedStanding& s : standings) {
     const std::string answers = s.entry->has_answers_as_submitted() ? s.entry->identity.answers_sha256 : "";
-    best.push_back(known.insert(s.entry->identity.row.own_name() + " " + answers).second);
+    s.more = !known.insert(s.entry->identity.row.own_name() + " " + answers).second;
   }
-  return best;
 }
 
 // What a row is called; its options under the pointer.
-TableCell named_cell(const NamedTable& table, std::size_t i) {
-  Span name(table.labels[i]);
-  if (const std::string options = display_name(table.names[i]); options != name.text) name.title = options;
+TableCell named_cell(const NamedStanding& s) {
+  Span name(s.label);
+  if (const std::string options = display_name(s.name); options != name.text) name.title = options;
   return name;
+}
+
+MethodStyles styles_of(const NamedTable& table) {
+  std::vector<std::string> names;
+  for (const NamedStanding& s : table.standings) names.push_back(s.name);
+  return MethodStyles(names);
 }
 
 TableCell rate_button(const std::string& text, double rate, std::size_t row) {
@@ -146,51 +144,38 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
   for (const Standing& s : table.standings)
     for (const auto& arm : s.in_arm)
       if (axes.empty()) arms.insert(arm.first);
-  Grid grid;
-  grid.name = setting.name();
-  grid.caption = title_of(table);
-  grid.heads = {"rank", "method", axes.empty() ? "success" : "area", "policy"};
-  const std::vector<int> numbers = setting.demonstrations.size() > 1 ? setting.demonstrations : std::vector<int>();
-  for (const int n : numbers) grid.heads.emplace_back(fmt::format("n = {}", n));
-  const bool selects = table.track.kind == Track::abstraction;
-  if (selects)
-    for (const char* head : {"where it decides", "gap closed"}) grid.heads.emplace_back(head);
-  if (!axes.empty())
-    for (const char* head : {"control", "of the control"}) grid.heads.emplace_back(head);
-  for (const std::string& axis : axes) grid.heads.emplace_back(titles.arm(axis));
-  if (arms.size() > 1)
-    for (const std::string& arm : arms) grid.heads.emplace_back(titles.arm(arm));
-  if (table.undisputed) grid.heads.emplace_back(titles.arm(table.undisputed->main.arm) + ", undisputed");
-  grid.heads.emplace_back("known");
-  grid.align = "rlrl" + std::string(grid.heads.size() - 4, 'r');
-  const MethodStyles styles(table.names);
-  for (std::size_t i = 0; i < table.standings.size(); ++i) {
-    const Standing& s = table.standings[i];
-    const bool reference = s.entry->identity.row.is_reference();
-    TableCell name = named_cell(table, i);
-    name.style = reference ? MethodStyle() : styles(table.names[i]);
-    Grid::Row row{{},
-                  {rank_span(s), name, score_button(s, (first_row + i) * scenarios_of_a_row), Span(table.policies[i])},
-                  reference};
-    for (const int n : numbers) {
-      const auto at = s.at.count(n) ? s.at.find(n) : s.at.find(0);
-      row.cells.emplace_back(at == s.at.end() ? TableCell("") : TableCell(Span::number(fixed(at->second))));
+  const MethodStyles styles = styles_of(table);
+  Grid grid = grid_of(table, "", title_of(table));
+  for (const NamedStanding& s : table.standings) {
+    add_row(grid, s);
+    put(grid, "rank", 'r', rank_span(s));
+    put(grid, "method", 'l', named_cell(s));
+    grid.rows.back().cells.back().style = s.is_reference() ? MethodStyle() : styles(s.name);
+    put(grid, axes.empty() ? "success" : "area", 'r', score_button(s, (first_row + table.row(s)) * scenarios_of_a_row));
+    put(grid, "policy", 'l', Span(s.policy));
+    if (setting.demonstrations.size() > 1)
+      for (const int n : setting.demonstrations) {
+        const auto at = s.at.count(n) ? s.at.find(n) : s.at.find(0);
+        put(grid, fmt::format("n = {}", n), 'r',
+            at == s.at.end() ? TableCell("") : TableCell(Span::number(fixed(at->second))));
+      }
+    if (table.track.kind == Track::abstraction) {
+      put(grid, "where it decides", 'r', rate_if_any(s.in_track));
+      put(grid, "gap closed", 'r', rate_if_any(s.gap_closed));
     }
-    if (selects)
-      for (const auto& value : {s.in_track, s.gap_closed}) row.cells.push_back(rate_if_any(value));
     if (!axes.empty()) {
       const double control = control_success(*s.entry);
-      row.cells.emplace_back(Span::number(fixed(control)));
-      row.cells.emplace_back(Span::number(control > 0 ? fixed(s.score / control) : "–"));
+      put(grid, "control", 'r', rate_if_any(control));
+      put(grid, "of the control", 'r', rate_if_any(control > 0 ? std::optional(s.score / control) : std::nullopt));
     }
-    for (const std::string& axis : axes) row.cells.push_back(rate_if_any(s.areas.at(axis)));
+    for (const std::string& axis : axes) put(grid, titles.arm(axis), 'r', rate_if_any(s.areas.at(axis)));
     if (arms.size() > 1)
-      for (const std::string& arm : arms) row.cells.emplace_back(Span::number(fixed(s.in_arm.at(arm))));
-    if (table.undisputed) row.cells.push_back(rate_if_any(success(*table.undisputed, *s.entry)));
-    row.cells.emplace_back(
+      for (const std::string& arm : arms) put(grid, titles.arm(arm), 'r', rate_if_any(s.in_arm.at(arm)));
+    if (table.undisputed)
+      put(grid, titles.arm(table.undisputed->main.arm) + ", undisputed", 'r',
+          rate_if_any(success(*table.undisputed, *s.entry)));
+    put(grid, "known", 'r',
         report::Spans{Span(tier_and_marks(s)), Span(" " + replayed_on(*s.entry), report::Emphasis::detail)});
-    row.more = !table.best[i];
-    grid.rows.push_back(std::move(row));
   }
   drop_empty_columns(grid);
   return grid;
@@ -198,30 +183,25 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
 
 // What rows are based on and what they cost, when they were computed and replayed, and by whom.
 Grid details_grid(const NamedTable& table) {
-  Grid grid;
-  grid.name = table.setting.name() + "_details";
-  grid.caption = title_of(table) + ": answers, costs, dates and sources";
-  grid.heads = {"method", "policy",     "answers",  "answers exact", "φ̂ precision", "φ̂ recall", "questions",
-                "tokens", "training s", "computed", "replayed",      "source",      "by",       "id"};
-  grid.align = "lllrrrrrrlllll";
-  for (std::size_t i = 0; i < table.standings.size(); ++i) {
-    const Standing& s = table.standings[i];
-    const bool reference = s.entry->identity.row.is_reference();
+  Grid grid = grid_of(table, "_details", title_of(table) + ": answers, costs, dates and sources");
+  for (const NamedStanding& s : table.standings) {
     const Json& score = s.entry->score;
-    Grid::Row row{{},
-                  {named_cell(table, i), Span(table.policies[i]), Span(answers_label(*s.entry)),
-                   Span::number(score.is_null() ? "–" : fixed(scenes_exact(score)))},
-                  reference,
-                  !table.best[i]};
-    for (const auto& part : {s.precision, s.recall}) row.cells.push_back(rate_if_any(part));
-    for (const double value : {s.lm_queries, s.lm_tokens, s.learn_s})
-      row.cells.emplace_back(Span::number(reference ? "–" : amount(value)));
-    row.cells.emplace_back(Span(computed_on(*s.entry)));
-    row.cells.emplace_back(Span(replayed_on(*s.entry)));
-    row.cells.emplace_back(source_span(*s.entry));
-    row.cells.emplace_back(Span(s.entry->about.at("by").get<std::string>()));
-    row.cells.emplace_back(id_span(*s.entry));
-    grid.rows.push_back(std::move(row));
+    const auto cost = [&s](double value) { return Span::number(s.is_reference() ? "–" : amount(value)); };
+    add_row(grid, s);
+    put(grid, "method", 'l', named_cell(s));
+    put(grid, "policy", 'l', Span(s.policy));
+    put(grid, "answers", 'l', Span(answers_label(*s.entry)));
+    put(grid, "answers exact", 'r', Span::number(score.is_null() ? "–" : fixed(scenes_exact(score))));
+    put(grid, "φ̂ precision", 'r', rate_if_any(s.precision));
+    put(grid, "φ̂ recall", 'r', rate_if_any(s.recall));
+    put(grid, "questions", 'r', cost(s.lm_queries));
+    put(grid, "tokens", 'r', cost(s.lm_tokens));
+    put(grid, "training s", 'r', cost(s.learn_s));
+    put(grid, "computed", 'l', Span(computed_on(*s.entry)));
+    put(grid, "replayed", 'l', Span(replayed_on(*s.entry)));
+    put(grid, "source", 'l', source_span(*s.entry));
+    put(grid, "by", 'l', by_span(*s.entry));
+    put(grid, "id", 'l', id_span(*s.entry));
   }
   drop_empty_columns(grid);
   return grid;
@@ -240,14 +220,12 @@ Chart curve_chart(const NamedTable& table) {
   chart.left = demonstrations.front() - pad;
   chart.right = demonstrations.back() + pad;
   for (const int n : demonstrations) chart.ticks.push_back({static_cast<double>(n), std::to_string(n)});
-  const MethodStyles styles(table.names);
+  const MethodStyles styles = styles_of(table);
   std::size_t drawn = 0;
-  for (std::size_t i = 0; i < table.standings.size(); ++i) {
-    const Standing& s = table.standings[i];
-    const bool reference = s.entry->identity.row.is_reference();
-    if (!reference && (!table.best[i] || ++drawn > curves)) continue;
-    const std::string name = table.full_name(i);
-    Series series{reference ? Series::reference : Series::measured, name, styles(table.names[i]), true};
+  for (const NamedStanding& s : table.standings) {
+    if (!s.is_reference() && (s.more || ++drawn > curves)) continue;
+    const std::string name = s.full_name();
+    Series series{s.is_reference() ? Series::reference : Series::measured, name, styles(s.name), true};
     for (const int n : demonstrations)
       if (const auto at = s.at.count(n) ? s.at.find(n) : s.at.find(0); at != s.at.end()) {
         const double rate = at->second;
@@ -261,25 +239,20 @@ Chart curve_chart(const NamedTable& table) {
 
 // Which scenarios an entry can do: a colour for each.
 Grid heat_grid(const NamedTable& table, std::size_t first_row) {
-  Grid grid;
-  grid.name = table.setting.name() + "_scenarios";
-  grid.caption = axes_of(table.setting).empty()
-                     ? "Success in each scenario, over all arms and numbers of demonstrations"
-                     : "Area in each scenario, over its axes and numbers of demonstrations";
-  grid.heads = {"method", "policy"};
   const Titles titles(table.setting.suite);
-  for (const Setting::Scenario& scenario : table.setting.scenarios)
-    grid.heads.emplace_back(titles.scenario(scenario.id));
-  grid.align = "ll" + std::string(table.setting.scenarios.size(), 'r');
-  for (std::size_t i = 0; i < table.standings.size(); ++i) {
-    const Standing& s = table.standings[i];
-    Grid::Row row{
-        {}, {named_cell(table, i), Span(table.policies[i])}, s.entry->identity.row.is_reference(), !table.best[i]};
-    for (std::size_t k = 0; k < table.setting.scenarios.size(); ++k) {
-      const double rate = s.in_scenario.at(table.setting.scenarios[k].id);
-      row.cells.push_back(rate_button(fixed(rate), rate, (first_row + i) * scenarios_of_a_row + k + 1));
+  Grid grid =
+      grid_of(table, "_scenarios",
+              axes_of(table.setting).empty() ? "Success in each scenario, over all arms and numbers of demonstrations"
+                                             : "Area in each scenario, over its axes and numbers of demonstrations");
+  for (const NamedStanding& s : table.standings) {
+    std::size_t number = (first_row + table.row(s)) * scenarios_of_a_row;
+    add_row(grid, s);
+    put(grid, "method", 'l', named_cell(s));
+    put(grid, "policy", 'l', Span(s.policy));
+    for (const Setting::Scenario& scenario : table.setting.scenarios) {
+      const double rate = s.in_scenario.at(scenario.id);
+      put(grid, titles.scenario(scenario.id), 'r', rate_button(fixed(rate), rate, ++number));
     }
-    grid.rows.push_back(std::move(row));
   }
   return grid;
 }
@@ -291,9 +264,14 @@ std::string capital(std::string text) {
   return text;
 }
 
-std::string NamedTable::full_name(std::size_t i) const {
-  return labels[i] + (policies[i].empty() ? "" : ", ") + policies[i];
+Grid grid_of(const NamedTable& table, const std::string& what, std::string caption) {
+  Grid grid;
+  grid.name = table.setting.name() + what;
+  grid.caption = std::move(caption);
+  return grid;
 }
+
+void add_row(Grid& grid, const NamedStanding& s) { grid.rows.push_back({{}, {}, s.is_reference(), s.more}); }
 
 std::vector<NamedTable> named_tables(const std::vector<const Entry*>& table, const Labels& labels,
                                      const Tracks& tracks) {
@@ -301,27 +279,20 @@ std::vector<NamedTable> named_tables(const std::vector<const Entry*>& table, con
   const Track track = track_of(tracks, setting);
   std::vector<NamedTable> all;
   for (const Ranking ranking : rankings_of(track)) {
-    std::vector<Standing> standing = standings(table, track, ranking);
+    const std::vector<Standing> standing = standings(table, track, ranking);
     if (!all.empty() && std::none_of(standing.begin(), standing.end(), [](const Standing& s) { return s.rank; }))
       continue;
-    NamedTable& named = all.emplace_back();
-    named.setting = setting;
-    named.track = track;
-    named.ranking = ranking;
-    if (track.kind == Track::abstraction) named.undisputed = undisputed_of(setting);
-    named.standings = std::move(standing);
-    named.steps = steps_of(named.standings, track.answers, named.undisputed);
-    Names names = names_of(named.standings, labels);
-    named.names = std::move(names.names);
-    named.labels = std::move(names.labels);
-    named.policies = std::move(names.policies);
-    named.best = best_of(named.standings);
+    NamedTable& one = all.emplace_back();
+    one.setting = setting;
+    one.track = track;
+    one.ranking = ranking;
+    if (track.kind == Track::abstraction) one.undisputed = undisputed_of(setting);
+    one.steps = steps_of(standing, track.answers, one.undisputed);
+    one.standings = named(standing, labels);
+    mark_more(one.standings);
     if (all.size() > 1) continue;
-    named.waiting = not_yet_replayed(table);
-    Names waiting = names_of(named.waiting, labels);
-    named.waiting_labels = std::move(waiting.labels);
-    named.waiting_policies = std::move(waiting.policies);
-    named.withdrawn = static_cast<int>(table.size() - named.standings.size() - named.waiting.size());
+    one.waiting = named(not_yet_replayed(table), labels);
+    one.withdrawn = static_cast<int>(table.size() - one.standings.size() - one.waiting.size());
   }
   return all;
 }

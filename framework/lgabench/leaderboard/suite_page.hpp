@@ -8,37 +8,53 @@
 #include <lgabench/leaderboard/labels.hpp>
 #include <lgabench/leaderboard/scenes.hpp>
 #include <lgabench/leaderboard/standings.hpp>
-#include <lgabench/report/document.hpp>
+#include <lgabench/report/columns.hpp>
 
 namespace lgabench::leaderboard {
 
-/// One ranking of a preset, with what its rows are called.
+/// A row of a ranking, with what it is called.
+struct NamedStanding : Standing {
+  std::string name{};             // as report/names.hpp takes it; no two of a table alike
+  std::string label{}, policy{};  // what readers are shown in place of the name; no two pairs alike
+  bool more = false;              // another row of its method stands above it
+
+  bool is_reference() const { return entry->identity.row.is_reference(); }
+  /// "LGA, heat map"
+  std::string full_name() const { return label + (policy.empty() ? "" : ", ") + policy; }
+};
+
+/// One ranking of a preset.
 struct NamedTable {
   Setting setting;
-  std::vector<Standing> standings;
-  std::vector<std::string> names;             // of each standing, as report/names.hpp takes them; no two alike
-  std::vector<std::string> labels, policies;  // what readers are shown in place of the names; no two pairs alike
-  std::vector<bool> best;                     // of each standing, whether it is the first of its method
-  std::vector<Standing> waiting;              // not yet replayed; of a preset's first ranking, like `withdrawn`
-  std::vector<std::string> waiting_labels, waiting_policies;
+  std::vector<NamedStanding> standings;
+  std::vector<NamedStanding> waiting;  // not yet replayed; of a preset's first ranking, like `withdrawn`
   int withdrawn = 0;
   Track track{};
   Ranking ranking = Ranking::any_policy;
   std::optional<Undisputed> undisputed;  // of the abstraction track
   std::optional<BoardSteps> steps;
 
-  /// "LGA, heat map"
-  std::string full_name(std::size_t i) const;
+  /// The place of one of its standings.
+  std::size_t row(const NamedStanding& standing) const {
+    return static_cast<std::size_t>(&standing - standings.data());
+  }
 };
 /// Those of a preset's entries: the first, and each other in which some entry has a rank.
 std::vector<NamedTable> named_tables(const std::vector<const Entry*>& table, const Labels& labels,
                                      const Tracks& tracks);
+
+/// A table without rows. `what`: of its name, behind the preset's.
+report::Grid grid_of(const NamedTable& table, const std::string& what, std::string caption);
+/// Adds a row without cells for it, which report::put() gives it.
+void add_row(report::Grid& grid, const NamedStanding& standing);
 
 /// "Fewer demonstrations?, any policy"
 std::string title_of(const NamedTable& table);
 /// Of an entry: the day when it was computed first, and that of its last verification that counts; "" without one.
 std::string computed_on(const Entry& entry);
 std::string replayed_on(const Entry& entry);
+/// Who submitted it.
+report::Span by_span(const Entry& entry);
 /// Its id, which leads to its entry.json.
 report::Span id_span(const Entry& entry);
 /// Its commit or file, which leads to the repository where that has an address.
@@ -57,7 +73,7 @@ std::string interval_text(const Standing& standing);
 std::string score_text(const Standing& standing);
 /// § of an entry below the random visible object, and what it means; the line below a table that has it.
 report::Span below_random_mark();
-std::optional<report::Paragraph> below_random_note(const std::vector<Standing>& standings);
+std::optional<report::Paragraph> below_random_note(const std::vector<NamedStanding>& standings);
 /// What else is known of an entry: "replayed; fresh", "recomputed; partly confined; 2 cells failed; claimed by B.
 /// Reader: replayed"
 std::string tier_and_marks(const Standing& standing);
