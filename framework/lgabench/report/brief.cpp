@@ -25,7 +25,7 @@ std::size_t width_of(const std::string& text) {
   return widest;
 }
 
-std::string rate_text(const Row& row, bool interval) {
+std::string success_text(const Row& row, bool interval) {
   if (!row.success) return "–";
   return fixed(*row.success) +
          (interval ? fmt::format(" [{}, {}]", fixed(row.interval.low), fixed(row.interval.high)) : "") +
@@ -51,7 +51,7 @@ struct Means {
     const Row* row = table.find(column.arm, mean_scenario, id, column.demonstrations);
     if (!row) return {};
     marks.insert(row->marks.begin(), row->marks.end());
-    return rate_text(*row, interval);
+    return success_text(*row, interval);
   }
 
   // Over columns in which the row has a value.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include <lgabench/report/columns.hpp>
 #include <lgabench/report/pairs.hpp>
 #include <lgabench/report/sections.hpp>
 
@@ -25,18 +26,20 @@ struct Placed {
 
 bool is_slope(const ClaimedDifference& d) { return d.unit != "success" && d.unit != "seconds"; }
 
-// The columns that say which difference a row is of.
-std::vector<TableCell> place_cells(const MethodStyles& styles, const AboutSuite& about, const Placed& of) {
+// A row, with the columns that say which difference it is of.
+void add_row(Grid& grid, const MethodStyles& styles, const AboutSuite& about, const Placed& of) {
   const ClaimedDifference& d = of.difference;
-  TableCell rows(styles.name(d.above) + " − " + styles.name(d.below) + (is_slope(d) ? ", " + d.unit : ""));
-  rows.style = styles(d.above);
-  return {of.claim.id,
-          of.claim.layout,
-          of.claim.engine,
-          about.arm_title(d.arm),
-          d.unit == "seconds" ? TableCell()
-                              : TableCell(Span::number(std::to_string(d.demonstrations), of.place + "/demonstrations")),
-          rows};
+  grid.rows.emplace_back();
+  put(grid, "claim", 'l', of.claim.id);
+  put(grid, "layout", 'l', of.claim.layout);
+  put(grid, "engine", 'l', of.claim.engine);
+  put(grid, "arm", 'l', about.arm_title(d.arm));
+  put(grid, "demonstrations", 'r',
+      d.unit == "seconds" ? TableCell()
+                          : TableCell(Span::number(std::to_string(d.demonstrations), of.place + "/demonstrations")));
+  put(grid, "difference", 'l',
+      styles.name(d.above) + " − " + styles.name(d.below) + (is_slope(d) ? ", " + d.unit : ""));
+  grid.rows.back().cells.back().style = styles(d.above);
 }
 
 // "+0.17 [+0.10, +0.24], p = 0.003", or why there is none; the difference stands in the first of the two alone.
@@ -88,56 +91,44 @@ TableCell reason_cell(const Claim& claim) {
   return Spans{"needs a run of suite ", Span(claim.needs, Emphasis::code)};
 }
 
-Grid differences_grid(const std::string& name, const std::string& caption) {
-  Grid grid;
-  grid.name = name;
-  grid.caption = caption;
-  grid.heads = {"claim", "layout", "engine", "arm", "demonstrations", "difference"};
-  grid.align = "llllrl";
-  return grid;
-}
-
 // A column for each scenario.
 Grid by_scenario(const MethodStyles& styles, const AboutSuite& about, const std::vector<Placed>& all) {
   std::vector<std::string> scenarios;
   for (const Placed& of : all)
     for (const auto& item : of.difference.by_scenario)
       if (std::find(scenarios.begin(), scenarios.end(), item.first) == scenarios.end()) scenarios.push_back(item.first);
-  Grid grid = differences_grid("claims_scenarios", "The differences by scenario");
-  grid.heads.insert(grid.heads.end(), scenarios.begin(), scenarios.end());
-  grid.align += std::string(scenarios.size(), 'r');
+  Grid grid;
+  grid.name = "claims_scenarios";
+  grid.caption = "The differences by scenario";
   for (const Placed& of : all) {
     const auto& values = of.difference.by_scenario;
     if (values.empty()) continue;
-    Grid::Row row{{}, place_cells(styles, about, of)};
+    add_row(grid, styles, about, of);
     for (const std::string& scenario : scenarios) {
       const auto found =
           std::find_if(values.begin(), values.end(), [&scenario](const auto& item) { return item.first == scenario; });
-      row.cells.push_back(
+      put(grid, scenario, 'r',
           found == values.end()
-              ? TableCell(Span::number("–"))
-              : TableCell(Span::number(signed_text(found->second),
-                                       fmt::format("{}/by_scenario/{}/difference", of.place, found - values.begin()))));
+              ? Span::number("–")
+              : Span::number(signed_text(found->second),
+                             fmt::format("{}/by_scenario/{}/difference", of.place, found - values.begin())));
     }
-    grid.rows.push_back(std::move(row));
   }
   return grid;
 }
 
 Grid details(const MethodStyles& styles, const AboutSuite& about, const std::vector<Placed>& all) {
-  Grid grid = differences_grid("claims_differences", "The differences behind the claims");
-  for (const char* head : {"these scenarios", "verdict", "scenarios like these", "verdict on those", "based on"})
-    grid.heads.emplace_back(head);
-  grid.align += "lllll";
+  Grid grid;
+  grid.name = "claims_differences";
+  grid.caption = "The differences behind the claims";
   for (const Placed& of : all) {
     const ClaimedDifference& d = of.difference;
-    Grid::Row row{{}, place_cells(styles, about, of)};
-    row.cells.push_back(test_cell(of, d.these, "/these_scenarios", true));
-    row.cells.emplace_back(to_string(d.these.verdict));
-    row.cells.push_back(test_cell(of, d.alike, "/scenarios_like_these", false));
-    row.cells.emplace_back(d.alike.change ? to_string(d.alike.verdict) : "");
-    row.cells.push_back(d.these.change ? sample_cell(of) : TableCell());
-    grid.rows.push_back(std::move(row));
+    add_row(grid, styles, about, of);
+    put(grid, "these scenarios", 'l', test_cell(of, d.these, "/these_scenarios", true));
+    put(grid, "verdict", 'l', to_string(d.these.verdict));
+    put(grid, "scenarios like these", 'l', test_cell(of, d.alike, "/scenarios_like_these", false));
+    put(grid, "verdict on those", 'l', d.alike.change ? to_string(d.alike.verdict) : "");
+    put(grid, "based on", 'l', d.these.change ? sample_cell(of) : TableCell());
   }
   return grid;
 }
@@ -155,10 +146,7 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
   Grid verdicts, untested;
   verdicts.name = "claims";
   verdicts.caption = "Verdicts";
-  verdicts.heads = {"claim", "statement", "layout", "engine", "these scenarios", "scenarios like these"};
-  verdicts.align = "llllll";
   const bool own = !claims.front().refuted_if.empty();
-  if (own) verdicts.heads.insert(verdicts.heads.begin() + 2, "refuted if"), verdicts.align += 'l';
   untested.name = "claims_not_tested";
   untested.caption = "Claims that this run does not test";
   untested.heads = {"claim", "statement", "layout", "engine", "why"};
@@ -167,15 +155,18 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
   std::vector<Placed> all, tested;
   for (std::size_t c = 0; c < claims.size(); ++c) {
     const Claim& claim = claims[c];
-    if (claim.verdict == Verdict::not_tested)
+    if (claim.verdict == Verdict::not_tested) {
       untested.rows.push_back({{}, {claim.id, claim.statement, claim.layout, claim.engine, reason_cell(claim)}});
-    else
-      verdicts.rows.push_back({{},
-                               {claim.id, claim.statement, claim.layout, claim.engine,
-                                verdict_cell(claim.verdict, claim.reason, claim.rehearsal),
-                                verdict_cell(claim.alike, claim.reason_alike, claim.rehearsal)}});
-    if (own && claim.verdict != Verdict::not_tested)
-      verdicts.rows.back().cells.insert(verdicts.rows.back().cells.begin() + 2, TableCell(claim.refuted_if));
+    } else {
+      verdicts.rows.emplace_back();
+      put(verdicts, "claim", 'l', claim.id);
+      put(verdicts, "statement", 'l', claim.statement);
+      if (own) put(verdicts, "refuted if", 'l', claim.refuted_if);
+      put(verdicts, "layout", 'l', claim.layout);
+      put(verdicts, "engine", 'l', claim.engine);
+      put(verdicts, "these scenarios", 'l', verdict_cell(claim.verdict, claim.reason, claim.rehearsal));
+      put(verdicts, "scenarios like these", 'l', verdict_cell(claim.alike, claim.reason_alike, claim.rehearsal));
+    }
     lines.items.push_back(
         {fmt::format("{}  {} (layout {}, engine {})", claim.id, claim.statement, claim.layout, claim.engine)});
     if (own) lines.items.push_back({"      refuted if " + claim.refuted_if});

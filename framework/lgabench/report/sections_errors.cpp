@@ -7,6 +7,7 @@
 
 #include <lgabench/core/environment.hpp>
 #include <lgabench/report/about_suite.hpp>
+#include <lgabench/report/columns.hpp>
 #include <lgabench/report/sections.hpp>
 
 namespace lgabench::report {
@@ -37,7 +38,6 @@ TableCell slope_cell(const std::vector<ErrorCurve>& curves, const Row& row, cons
   });
   if (curve == curves.end()) return {};
   const std::string place = fmt::format("/error_curves/{}/", curve - curves.begin());
-  const auto signed_rate = [](double x) { return signed_text(x); };
   if (!curve->interval) return Span::number(signed_rate(curve->slope), place + "slope", Emphasis::strong);
   return with_interval(curve->slope, *curve->interval, place, {"slope", "low", "high"}, signed_rate, Emphasis::strong);
 }
@@ -64,32 +64,29 @@ Grid grid_of(const Material& material, const AboutSuite& about, const Table& tab
   grid.caption = fmt::format("Success with errors of the Selection, {}, arm {}, {}; {}", table.title(mean_scenario),
                              table.arm_head(arm), table.demonstrations_text(n), table.title());
   grid.group_head = about.rows.empty() ? "" : "where the knowledge enters";
-  grid.heads = {"method", "no errors"};
-  grid.align = "llr";
+  grid.align = "l";
   const auto ends = [&](std::size_t i) {  // whether a kind's columns end there, behind which its slope stands
     return (columns[i].missing == 0) != (columns[i].added == 0) &&
            (i + 1 == columns.size() || (columns[i + 1].missing != 0) != (columns[i].missing != 0) ||
             (columns[i + 1].added != 0) != (columns[i].added != 0));
   };
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    const auto& [missing, added] = columns[i];
-    grid.heads.emplace_back(missing == 0 ? fmt::format("added {:g}", added)
-                            : added == 0 ? fmt::format("missing {:g}", missing)
-                                         : fmt::format("missing {:g}, added {:g}", missing, added));
-    if (ends(i)) grid.heads.emplace_back("slope per 0.1");
-  }
-  grid.align += std::string(grid.heads.size() - 2, 'r');
+  const auto head = [](const SelectionErrors& e) {
+    return e.missing == 0 ? fmt::format("added {:g}", e.added)
+           : e.added == 0 ? fmt::format("missing {:g}", e.missing)
+                          : fmt::format("missing {:g}, added {:g}", e.missing, e.added);
+  };
   for (const std::string& method : table.without_errors().methods(mean_scenario)) {
     const Row* right = table.find(arm, mean_scenario, method, n);
     if (!right) continue;
-    Grid::Row row{about.row(method), {named(material, method, Emphasis::strong), erring_cell(right)}};
+    grid.rows.push_back({about.row(method), {}});
+    put(grid, "method", 'l', named(material, method, Emphasis::strong));
+    put(grid, "no errors", 'r', erring_cell(right));
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      row.cells.push_back(erring_cell(table.find(arm, mean_scenario, method + columns[i].suffix(), n)));
+      put(grid, head(columns[i]), 'r', erring_cell(table.find(arm, mean_scenario, method + columns[i].suffix(), n)));
       if (ends(i))
-        row.cells.push_back(
+        put(grid, "slope per 0.1", 'r',
             slope_cell(material.summary.error_curves, *right, columns[i].missing != 0 ? "missing" : "added"));
     }
-    grid.rows.push_back(std::move(row));
   }
   std::stable_sort(grid.rows.begin(), grid.rows.end(),
                    [](const Grid::Row& a, const Grid::Row& b) { return a.group.text() < b.group.text(); });

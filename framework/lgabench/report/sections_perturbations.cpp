@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include <lgabench/report/columns.hpp>
 #include <lgabench/report/perturbation_parts.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/report/tables.hpp>
@@ -30,18 +31,6 @@ std::string place_of(const Material& material, const Curve& curve, const Curve::
 }
 
 // Cells.
-
-Spans interval_spans(const Interval& interval, const std::string& low, const std::string& high,
-                     std::string (*text)(double)) {
-  const auto aside = [](const std::string& words, const std::string& place) {
-    return Span::number(words, place, Emphasis::detail);
-  };
-  return {aside(" [", ""), aside(text(interval.low), low), aside(", ", ""), aside(text(interval.high), high),
-          aside("]", "")};
-}
-
-std::string rate(double x) { return fixed(x); }
-std::string change(double x) { return signed_text(x); }
 
 TableCell p_cell(double p, const std::string& place) {
   return p < .001 ? Span::number("< 0.001") : Span::number(fixed(p, 3), place);
@@ -77,11 +66,12 @@ TableCell level_cell(const Material& material, const Curve& curve, int number) {
 
 TableCell area_cell(const Material& material, const Curve& curve) {
   if (!curve.area) return Span::number("–");
-  TableCell cell(Span::number(fixed(curve.area->relative), place_of(material, curve, "area/relative")));
-  for (Span& span : interval_spans(curve.area->interval, place_of(material, curve, "area/low"),
-                                   place_of(material, curve, "area/high"), rate))
-    cell.spans.push_back(std::move(span));
-  return cell;
+  return with_interval(curve.area->relative, curve.area->interval, place_of(material, curve, "area/"),
+                       {"relative", "low", "high"}, rate_text);
+}
+
+TableCell change_cell(const Change& change, const std::string& place) {
+  return with_interval(change.difference, change.interval, place, {"difference", "low", "high"}, signed_rate);
 }
 
 std::vector<const Curve::Level*> losses(const Curve& curve) {
@@ -132,16 +122,9 @@ TableCell took_cell(const std::map<std::string, int>& took) {
 
 // Of the level that gives another command; empty where none does.
 TableCell use_cell(const Material& material, const Curve& curve) {
-  for (const Curve::Level& level : curve.levels) {
-    if (!level.use_of_language) continue;
-    const auto place = [&](const char* member) {
-      return place_of(material, curve, level, fmt::format("use_of_language/{}", member));
-    };
-    TableCell cell(Span::number(change(level.use_of_language->difference), place("difference")));
-    for (Span& span : interval_spans(level.use_of_language->interval, place("low"), place("high"), change))
-      cell.spans.push_back(std::move(span));
-    return cell;
-  }
+  for (const Curve::Level& level : curve.levels)
+    if (level.use_of_language)
+      return change_cell(*level.use_of_language, place_of(material, curve, level, "use_of_language/"));
   return {};
 }
 
@@ -159,6 +142,7 @@ Grid curves_grid(const Material& material, const std::vector<Part>& all, bool by
   for (const Part& part : all)
     for (const Curve* curve : part.curves)
       for (const Curve::Level& level : curve->levels) levels.insert(level.level);
+  const bool language = gives_other_commands(all);
   Grid grid;
   grid.name = by_row ? "" : "perturbations";
   grid.caption =
@@ -166,31 +150,19 @@ Grid curves_grid(const Material& material, const std::vector<Part>& all, bool by
       "control [95 % interval]";
   grid.group_head = by_row ? "row" : "table";
   grid.align = "l";
-  const auto head = [&grid](const std::string& text, char align) {
-    grid.heads.emplace_back(text);
-    grid.align += align;
-  };
-  if (!by_row) head("method", 'l');
-  head("axis", 'l');
-  head("control", 'r');
-  for (const int level : levels) head(std::to_string(level), 'r');
-  const bool language = gives_other_commands(all);
-  if (language) head("use of language", 'r');
-  for (const char* text : {"area", "first significant loss", "unchanged input"}) head(text, 'r');
   for (const Part& part : all)
     for (const Curve* curve : part.curves) {
       const std::string group = part.title();
-      Grid::Row row{
-          by_row ? material.styles.name(curve->method) + ", " + group : group, {}, curve->kind == "reference"};
-      if (!by_row) row.cells.push_back(named(material, curve->method));
-      row.cells.emplace_back(curve->axis);
-      row.cells.push_back(control_cell(material, *curve));
-      for (const int level : levels) row.cells.push_back(level_cell(material, *curve, level));
-      if (language) row.cells.push_back(use_cell(material, *curve));
-      row.cells.push_back(area_cell(material, *curve));
-      row.cells.push_back(loss_cell(material, *curve));
-      row.cells.push_back(inputs_cell(*curve));
-      grid.rows.push_back(std::move(row));
+      grid.rows.push_back(
+          {by_row ? material.styles.name(curve->method) + ", " + group : group, {}, curve->kind == "reference"});
+      if (!by_row) put(grid, "method", 'l', named(material, curve->method));
+      put(grid, "axis", 'l', curve->axis);
+      put(grid, "control", 'r', control_cell(material, *curve));
+      for (const int level : levels) put(grid, std::to_string(level), 'r', level_cell(material, *curve, level));
+      if (language) put(grid, "use of language", 'r', use_cell(material, *curve));
+      put(grid, "area", 'r', area_cell(material, *curve));
+      put(grid, "first significant loss", 'r', loss_cell(material, *curve));
+      put(grid, "unchanged input", 'r', inputs_cell(*curve));
     }
   return grid;
 }
@@ -218,44 +190,42 @@ Grid areas_grid(const Material& material, const Part& part) {
 }
 
 Grid levels_grid(const Material& material, const std::vector<Part>& all) {
+  const bool language = gives_other_commands(all);
   Grid grid;
   grid.name = "perturbations_levels";
   grid.caption =
       "Each level against the control, scene by scene; lost, gained: episodes that failed at the level alone, "
       "or in the control alone";
   grid.group_head = "table";
-  grid.heads = {"method", "axis",   "level",       "which is",     "success",        "change",
-                "lost",   "gained", "McNemar’s p", "p after Holm", "unchanged input"};
-  grid.align = "llllrrrrrrrr";
-  const bool language = gives_other_commands(all);
-  if (language) {
-    grid.heads.emplace_back("took its own, the other’s, a third, none");
-    grid.heads.emplace_back("the same in the control");
-    grid.align += "rr";
-  }
+  grid.align = "l";
   for (const Part& part : all)
     for (const Curve* curve : part.curves)
       for (const Curve::Level& level : curve->levels) {
+        const bool reference = curve->kind == "reference";
         const auto place = [&](const char* member) { return place_of(material, *curve, level, member); };
         const auto count = [&](const char* member, int n) { return Span::number(std::to_string(n), place(member)); };
         TableCell success = level_cell(material, *curve, level.level);
-        const Row& row = row_at(material, level.row);
-        for (Span& span :
-             interval_spans(level.interval, report::place_of(row, "low"), report::place_of(row, "high"), rate))
-          success.spans.push_back(std::move(span));
-        TableCell differs(Span::number(change(level.change.difference), place("change/difference")));
-        for (Span& span : interval_spans(level.change.interval, place("change/low"), place("change/high"), change))
-          differs.spans.push_back(std::move(span));
-        grid.rows.push_back(
-            {part.title(),
-             {named(material, curve->method), curve->axis, count("level", level.level), level.name, std::move(success),
-              std::move(differs), count("lost", level.lost), count("gained", level.gained),
-              p_cell(level.p_mcnemar, place("p_mcnemar")),
-              level.p_holm ? p_cell(*level.p_holm, place("p_holm")) : TableCell(),
-              curve->kind == "reference" ? TableCell() : inputs_cell(level.inputs.unchanged, level.inputs.of)},
-             curve->kind == "reference"});
+        const Spans all_of_it =
+            with_interval(level.success, level.interval, report::place_of(row_at(material, level.row), ""),
+                          {"success", "low", "high"}, rate_text)
+                .spans;
+        success.spans.insert(success.spans.end(), all_of_it.begin() + 1, all_of_it.end());
+        grid.rows.push_back({part.title(), {}, reference});
+        put(grid, "method", 'l', named(material, curve->method));
+        put(grid, "axis", 'l', curve->axis);
+        put(grid, "level", 'l', count("level", level.level));
+        put(grid, "which is", 'r', level.name);
+        put(grid, "success", 'r', std::move(success));
+        put(grid, "change", 'r', change_cell(level.change, place("change/")));
+        put(grid, "lost", 'r', count("lost", level.lost));
+        put(grid, "gained", 'r', count("gained", level.gained));
+        put(grid, "McNemar’s p", 'r', p_cell(level.p_mcnemar, place("p_mcnemar")));
+        put(grid, "p after Holm", 'r', level.p_holm ? p_cell(*level.p_holm, place("p_holm")) : TableCell());
+        put(grid, "unchanged input", 'r',
+            reference ? TableCell() : inputs_cell(level.inputs.unchanged, level.inputs.of));
         if (!language) continue;
-        for (const auto* took : {&level.took, &curve->took}) grid.rows.back().cells.push_back(took_cell(*took));
+        put(grid, "took its own, the other’s, a third, none", 'r', took_cell(level.took));
+        put(grid, "the same in the control", 'r', took_cell(curve->took));
       }
   return grid;
 }

@@ -7,8 +7,6 @@
 namespace lgabench::report {
 namespace {
 
-std::string signed_rate(double x) { return signed_text(x); }
-
 Grid grid_of(const Material& material, const Table& table) {
   Grid grid;
   grid.name = fmt::format("steps_{}_{}", slug(table.layout), slug(table.engine));

@@ -9,10 +9,6 @@
 namespace lgabench::report {
 namespace {
 
-// Two decimals, as all rates have.
-std::string rate_text(double x) { return fixed(x); }
-std::string shift_text(double x) { return signed_text(x); }
-
 TableCell success_cell(const Row* row) {
   if (!row) return {};
   const Spans marks = marks_spans(*row);
@@ -34,7 +30,7 @@ TableCell shift_cell(const Row* row) {
   const Interval& interval = row->shift->interval;
   const Emphasis emphasis = interval.high < 0 ? Emphasis::worse : interval.low > 0 ? Emphasis::better : Emphasis::none;
   TableCell cell = with_interval(row->shift->difference, interval, place_of(*row, "shift/"),
-                                 {"difference", "low", "high"}, shift_text, emphasis);
+                                 {"difference", "low", "high"}, signed_rate, emphasis);
   if (acts_the_same(*row)) cell.spans.push_back(Span::number(" ="));
   return cell;
 }
