@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 #include <set>
 
 #include <lgabench/core/parallel.hpp>
+#include <lgabench/report/about_suite.hpp>
 #include <lgabench/report/claims_field.hpp>
 #include <lgabench/report/names.hpp>
 
@@ -25,23 +28,39 @@ Verdict worst(const std::vector<ClaimedDifference>& differences, Test test) {
   return differences.empty() ? Verdict::not_tested : Verdict::held;
 }
 
+// A test of a difference: by how much it is on its claim's side (below 0: on the other; 0: neither), and its p.
+struct Side {
+  Tested* tested;
+  double ahead, p;
+};
+
+// Of an ordering.
+Side side_of(Tested& tested) {
+  const Interval& i = tested.change->interval;
+  return {&tested, i.low > 0 ? i.low : std::min(i.high, 0.0), tested.change->p};
+}
+
+// The verdicts of a family of tests.
+void judge(const std::vector<Side>& family) {
+  std::vector<double> p;
+  for (const Side& side : family) p.push_back(side.p);
+  const std::vector<double> adjusted = holm(p);
+  for (std::size_t i = 0; i < family.size(); ++i) {
+    auto& [tested, ahead, ignored] = family[i];
+    tested->p_holm = adjusted[i];
+    tested->verdict = adjusted[i] > alpha || ahead == 0 ? Verdict::undecided
+                      : ahead > 0                       ? Verdict::held
+                                                        : Verdict::reversed;
+  }
+}
+
 // The rows compared for one claim in one arm at one number of demonstrations: a family of tests.
-void judge_orderings(std::vector<ClaimedDifference>& family) {
+void judge_orderings(std::vector<ClaimedDifference>& differences) {
   for (const Test test : tests) {
-    std::vector<double> p;
-    for (const ClaimedDifference& d : family)
-      if ((d.*test).change) p.push_back((d.*test).change->p);
-    const std::vector<double> adjusted = holm(p);
-    std::size_t tested = 0;
-    for (ClaimedDifference& d : family) {
-      Tested& t = d.*test;
-      if (!t.change) continue;
-      t.p_holm = adjusted[tested++];
-      const bool beyond_chance = t.p_holm <= alpha;
-      t.verdict = beyond_chance && t.change->interval.low > 0    ? Verdict::held
-                  : beyond_chance && t.change->interval.high < 0 ? Verdict::reversed
-                                                                 : Verdict::undecided;
-    }
+    std::vector<Side> family;
+    for (ClaimedDifference& d : differences)
+      if (Tested& t = d.*test; t.change) family.push_back(side_of(t));
+    judge(family);
   }
 }
 
@@ -213,6 +232,19 @@ void test_seconds(Claim& claim, const PaperClaim& paper, const Field& field) {
   }
 }
 
+// A claim's verdicts, from those of its differences.
+void conclude(Claim& claim, const Field& field) {
+  claim.rehearsal = field.rehearsal && std::any_of(claim.differences.begin(), claim.differences.end(),
+                                                   [](const auto& d) { return d.participants > 0; });
+  const bool refused = !claim.reason.empty();  // before any row was looked at
+  claim.verdict = worst(claim.differences, &ClaimedDifference::these);
+  claim.alike = worst(claim.differences, &ClaimedDifference::alike);
+  if (claim.verdict == Verdict::not_tested && !refused)
+    claim.reason = reasons(claim.differences, &ClaimedDifference::these);
+  if (claim.alike == Verdict::not_tested)
+    claim.reason_alike = refused ? claim.reason : reasons(claim.differences, &ClaimedDifference::alike);
+}
+
 Claim test_claim(const PaperClaim& paper, const std::string& suite, const Field& field) {
   Claim claim;
   claim.id = paper.id, claim.statement = paper.statement;
@@ -227,6 +259,72 @@ Claim test_claim(const PaperClaim& paper, const std::string& suite, const Field&
     test_seconds(claim, paper, field);
   conclude(claim, field);
   return claim;
+}
+
+Field only(const Field& field, const std::vector<std::string>& scenarios) {
+  if (scenarios.empty()) return field;
+  Field some;
+  for (const CellResult* cell : field.cells())
+    if (std::find(scenarios.begin(), scenarios.end(), cell->scenario) != scenarios.end()) some.add(*cell);
+  some.layout = field.layout, some.engine = field.engine;
+  return some;
+}
+
+Claim measured_claim(const SuiteClaim& own, const Field& all) {
+  const Field field = only(all, own.scenarios);
+  Claim claim;
+  claim.id = own.id, claim.statement = own.statement, claim.refuted_if = own.refuted_if;
+  claim.layout = all.layout, claim.engine = all.engine;
+  const std::vector<int> every(field.demonstrations.begin(), field.demonstrations.end());
+  for (const std::string& arm : own.arms.empty() ? field.arms : own.arms)
+    for (const int n : own.demonstrations.empty() ? every : own.demonstrations) {
+      if (std::find(field.arms.begin(), field.arms.end(), arm) == field.arms.end()) {
+        ClaimedDifference missing;
+        missing.above = own.above, missing.below = own.below, missing.arm = arm, missing.demonstrations = n;
+        missing.these.reason = missing.alike.reason = "no arm " + arm;
+        claim.differences.push_back(missing);
+      } else {
+        claim.differences.push_back(
+            own.test == SuiteClaim::Test::slope
+                ? measured_slope(field, own, arm, n)
+                : measured(field, own.id, claimed_method(own.above), claimed_method(own.below), arm, n));
+      }
+    }
+  return claim;
+}
+
+// Where a margin shifts it, p is from the interval's width, as if it were a normal distribution's.
+Side side_of(const SuiteClaim& own, Tested& tested) {
+  using Kind = SuiteClaim::Test;
+  if (own.test == Kind::ordering || own.test == Kind::slope) return side_of(tested);
+  const Change& change = *tested.change;
+  const double ahead = own.margin - (own.test == Kind::equivalence ? std::abs(change.difference) : change.difference);
+  const double error = (change.interval.high - change.interval.low) / (2 * z_95);
+  if (error <= 0) return {&tested, ahead, ahead == 0 ? 1. : 0.};
+  return {&tested, ahead, std::erfc(std::abs(ahead) / error / std::sqrt(2.0))};
+}
+
+// As the run's record has them, or else the installation, of a run that is older than they are.
+std::vector<SuiteClaim> own_claims(const RunResults& run) {
+  if (!run.record.claims.is_null()) return read_suite_claims(run.record.claims, "run.json: /claims");
+  const fs::path file = installed_suite(run.suite);
+  const Json installed = file.empty() ? Json() : claims_beside(file);
+  return installed.is_null() ? std::vector<SuiteClaim>() : read_suite_claims(installed, file.string());
+}
+
+// Each on the field; their differences, all together, are a family of tests.
+std::vector<Claim> test_own(const std::vector<SuiteClaim>& own, const Field& field) {
+  std::vector<Claim> claims(own.size());
+  in_parallel(own.size(), [&](std::size_t i) { claims[i] = measured_claim(own[i], field); });
+  for (const Test test : tests) {
+    std::vector<Side> family;
+    for (std::size_t i = 0; i < own.size(); ++i)
+      for (ClaimedDifference& d : claims[i].differences)
+        if (Tested& t = d.*test; t.change) family.push_back(side_of(own[i], t));
+    judge(family);
+  }
+  for (Claim& claim : claims) conclude(claim, field);
+  return claims;
 }
 
 Claim difference_in(const Field& field, const std::string& above, const std::string& below) {
@@ -254,18 +352,6 @@ std::map<std::pair<std::string, std::string>, Field> fields_of(const RunResults&
 }
 
 }  // namespace
-
-void conclude(Claim& claim, const Field& field) {
-  claim.rehearsal = field.rehearsal && std::any_of(claim.differences.begin(), claim.differences.end(),
-                                                   [](const auto& d) { return d.participants > 0; });
-  const bool refused = !claim.reason.empty();  // before any row was looked at
-  claim.verdict = worst(claim.differences, &ClaimedDifference::these);
-  claim.alike = worst(claim.differences, &ClaimedDifference::alike);
-  if (claim.verdict == Verdict::not_tested && !refused)
-    claim.reason = reasons(claim.differences, &ClaimedDifference::these);
-  if (claim.alike == Verdict::not_tested)
-    claim.reason_alike = refused ? claim.reason : reasons(claim.differences, &ClaimedDifference::alike);
-}
 
 std::string to_string(Verdict verdict) {
   constexpr const char* words[] = {"held", "reversed", "undecided", "not tested"};

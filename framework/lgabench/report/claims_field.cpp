@@ -63,6 +63,21 @@ Tested over_scenarios(const std::vector<std::pair<std::string, double>>& by_scen
   return tested;
 }
 
+// What pairs of policies come to, where a difference of 1 stands for `reach`.
+void sum_up(ClaimedDifference& d, const PairedRow& pairs, const std::set<long long>& seeds, const std::string& stream,
+            double reach = 1) {
+  d.by_scenario = pairs.by_scenario();
+  for (auto& item : d.by_scenario) item.second *= reach;
+  d.scenarios = pairs.scenarios();
+  d.scenes = pairs.scenes();
+  d.seeds = static_cast<int>(seeds.size());
+  d.policies = pairs.policies();
+  d.participants = pairs.participants();
+  Change& change = d.these.change.emplace(pairs.change(stream));
+  change.difference *= reach, change.interval.low *= reach, change.interval.high *= reach;
+  d.alike = over_scenarios(d.by_scenario);
+}
+
 }  // namespace
 
 void Field::add(const CellResult& cell) {
@@ -157,15 +172,8 @@ ClaimedDifference measured_rows(const Field& field, const std::string& claim, co
     d.these.reason = d.alike.reason = fmt::format("{} of {} policies finished in both rows", pairs.policies(), wanted);
     return d;
   }
-  d.by_scenario = pairs.by_scenario();
-  d.scenarios = pairs.scenarios();
-  d.scenes = pairs.scenes();
-  d.seeds = static_cast<int>(seeds.size());
-  d.policies = pairs.policies();
-  d.participants = pairs.participants();
-  d.these.change = pairs.change(
-      fmt::format("claims/{}/{}/{}/{}/{}/{}/{}", claim, field.layout, field.engine, d.above, d.below, arm, n));
-  d.alike = over_scenarios(d.by_scenario);
+  sum_up(d, pairs, seeds,
+         fmt::format("claims/{}/{}/{}/{}/{}/{}/{}", claim, field.layout, field.engine, d.above, d.below, arm, n));
   return d;
 }
 
@@ -222,16 +230,7 @@ ClaimedDifference measured_slope(const Field& field, const SuiteClaim& claim, co
                                   : "a slope needs two policies or more";
     return d;
   }
-  d.by_scenario = pairs.by_scenario();
-  for (auto& item : d.by_scenario) item.second *= reach;
-  d.scenarios = pairs.scenarios();
-  d.scenes = pairs.scenes();
-  d.seeds = static_cast<int>(seeds.size());
-  d.policies = pairs.policies();
-  Change change = pairs.change(fmt::format("claims/{}/{}/{}/{}/{}", claim.id, field.layout, field.engine, arm, n));
-  change.difference *= reach, change.interval.low *= reach, change.interval.high *= reach;
-  d.these.change = change;
-  d.alike = over_scenarios(d.by_scenario);
+  sum_up(d, pairs, seeds, fmt::format("claims/{}/{}/{}/{}/{}", claim.id, field.layout, field.engine, arm, n), reach);
   return d;
 }
 

@@ -49,15 +49,6 @@ ClaimedDifference measured_rows(const Field& field, const std::string& claim, co
 /// `below`; paired as above, all levels together.
 ClaimedDifference measured_slope(const Field& field, const SuiteClaim& claim, const std::string& arm, int n);
 
-/// A claim's verdicts, from those of its differences.
-void conclude(Claim& claim, const Field& field);
-
-/// As the run's record has them, or else the installation, of a run that is older than they are.
-std::vector<SuiteClaim> own_claims(const RunResults& run);
-
-/// Each on the field; their differences, all together, are a family of tests.
-std::vector<Claim> test_own(const std::vector<SuiteClaim>& own, const Field& field);
-
 /// As one that enters means.
 bool has_arm(const CellResult& cell, const std::string& arm);
 
