@@ -116,21 +116,18 @@ CellAgreement compare_cells(const fs::path& recorded, const fs::path& recomputed
 
 std::vector<PooledAgreement> pooled(const std::vector<std::pair<std::string, CellAgreement>>& cells) {
   std::map<std::string, PooledAgreement> rows;
+  PooledAgreement total;
   for (const auto& [row, cell] : cells) {
     if (cell.only_recorded + cell.only_recomputed == 0) continue;
-    PooledAgreement& one = rows.emplace(row, PooledAgreement{row}).first->second;
-    ++one.cells;
-    one.only_recorded += cell.only_recorded;
-    one.only_recomputed += cell.only_recomputed;
+    rows[row].row = row;
+    for (PooledAgreement* one : {&rows[row], &total}) {
+      ++one->cells;
+      one->only_recorded += cell.only_recorded;
+      one->only_recomputed += cell.only_recomputed;
+    }
   }
   std::vector<PooledAgreement> all;
-  PooledAgreement total;
-  for (const auto& [row, one] : rows) {
-    all.push_back(one);
-    total.cells += one.cells;
-    total.only_recorded += one.only_recorded;
-    total.only_recomputed += one.only_recomputed;
-  }
+  for (const auto& item : rows) all.push_back(item.second);
   if (all.size() > 1) all.push_back(total);
   std::vector<double> p;
   for (const PooledAgreement& one : all) p.push_back(mcnemar(one.only_recorded, one.only_recomputed));
