@@ -6,6 +6,7 @@
 
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/leaderboard/titles.hpp>
+#include <lgabench/report/columns.hpp>
 #include <lgabench/report/names.hpp>
 
 namespace lgabench::leaderboard {
@@ -64,27 +65,23 @@ report::Grid steps_grid(const BoardSteps& steps, const std::string& suite, const
   grid.name = name;
   grid.caption = fmt::format("Success in {}, {} demonstrations, and what each row adds to the one above it",
                              Titles(suite).arm(steps.main.arm), steps.main.demonstrations);
-  grid.heads = {"told", "row", "success", "added", "these scenarios", "other scenarios too"};
-  grid.align = "llrrll";
-  const bool undisputed = steps.undisputed.front().has_value();
-  if (undisputed) {
-    grid.heads.insert(grid.heads.begin() + 3, "undisputed");
-    grid.align.insert(3, "r");
-  }
   for (std::size_t i = 0; i < stages.size(); ++i) {
-    report::Grid::Row row{{},
-                          {report::Span(stages[i].what), report::Span(report::display_name(stages[i].method)),
-                           report::Span::number(fixed(steps.success[i]))}};
-    if (undisputed) row.cells.emplace_back(report::Span::number(fixed(steps.undisputed[i].value_or(0))));
-    const std::size_t added = row.cells.size();
-    row.cells.resize(grid.heads.size());
+    grid.rows.emplace_back();
+    put(grid, "told", 'l', report::Span(stages[i].what));
+    put(grid, "row", 'l', report::Span(report::display_name(stages[i].method)));
+    put(grid, "success", 'r', report::Span::number(fixed(steps.success[i])));
+    if (steps.undisputed.front())
+      put(grid, "undisputed", 'r', report::Span::number(fixed(steps.undisputed[i].value_or(0))));
+    std::array<report::TableCell, 3> added;  // nothing in the first row
     if (i > 0) {
       const report::Step& step = steps.steps[i - 1];
-      row.cells[added] = report::Span::number(signed_text(step.difference), "", report::Emphasis::strong);
-      row.cells[added + 1] = report::Span::number(report::signed_interval(step.interval));
-      row.cells[added + 2] = report::Span::number(report::signed_interval(step.over_commands));
+      added = {report::Span::number(signed_text(step.difference), "", report::Emphasis::strong),
+               report::Span::number(report::signed_interval(step.interval)),
+               report::Span::number(report::signed_interval(step.over_commands))};
     }
-    grid.rows.push_back(std::move(row));
+    put(grid, "added", 'r', added[0]);
+    put(grid, "these scenarios", 'l', added[1]);
+    put(grid, "other scenarios too", 'l', added[2]);
   }
   return grid;
 }

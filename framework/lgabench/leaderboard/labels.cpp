@@ -74,10 +74,7 @@ std::string policy_label(const Labels& labels, const Entry& entry) {
 std::string answers_label(const Entry& entry) {
   if (entry.identity.row.is_reference()) return "";
   if (entry.has_answers_as_submitted()) return as_submitted;
-  std::set<std::string> all;
-  for (const auto& scenario : entry.phi.items())
-    for (const Json& list : scenario.value())
-      for (const Json& command : list) all.insert(command.at("selection").at("provenance"));
+  const std::set<std::string> all = provenances_of(entry);
   for (const auto& [provenance, words] : {std::pair("human", "people"),
                                           {"simulated_edit", "a simulated person"},
                                           {"truth", "the truth"},

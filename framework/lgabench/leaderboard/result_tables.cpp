@@ -32,7 +32,7 @@ void add_named_row(Grid& grid, const NamedStanding& s) {
   add_row(grid, s);
   put(grid, "method", 'l', Span(s.label));
   put(grid, "policy", 'l', Span(s.policy));
-  put(grid, "answers", 'l', Span(s.is_reference() ? "" : answers_label(*s.entry)));
+  put(grid, "answers", 'l', Span(answers_label(*s.entry)));
 }
 
 double mean_of(const Rates& rates) {

@@ -165,15 +165,6 @@ void add_ranks(std::vector<Standing>& all, const report::SharedResamples& resamp
   }
 }
 
-// Where its Selections come from.
-std::set<std::string> provenances_of(const Entry& entry) {
-  std::set<std::string> all;
-  for (const auto& scenario : entry.phi.items())
-    for (const Json& list : scenario.value())
-      for (const Json& command : list) all.insert(command.at("selection").at("provenance").get<std::string>());
-  return all;
-}
-
 // In the abstraction track: truths are public, so that nothing but a method on given answers can be ranked.
 std::string why_not_in_track(const Entry& entry, const Track& track) {
   if (track.answers.empty()) return "no ranks: the truths are public";
@@ -184,6 +175,14 @@ std::string why_not_in_track(const Entry& entry, const Track& track) {
 }
 
 }  // namespace
+
+std::set<std::string> provenances_of(const Entry& entry) {
+  std::set<std::string> all;
+  for (const auto& scenario : entry.phi.items())
+    for (const Json& list : scenario.value())
+      for (const Json& command : list) all.insert(command.at("selection").at("provenance").get<std::string>());
+  return all;
+}
 
 std::string why_not_ranked(const Entry& entry) {
   if (entry.identity.row.is_reference()) return "reference";

@@ -2,6 +2,7 @@
 #pragma once
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,9 @@ Rates rates_of(const Entry& entry, const std::string& only_arm = "", int only_de
 
 /// The mark of an entry whose answers are a file that its authors wrote, which may be a copy of the truth.
 inline constexpr const char* as_submitted = "answers as submitted";
+
+/// Where its Selections come from.
+std::set<std::string> provenances_of(const Entry& entry);
 
 /// Why an entry has no place among the ranked: "" for one that has.
 std::string why_not_ranked(const Entry& entry);

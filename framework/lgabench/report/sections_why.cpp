@@ -8,6 +8,7 @@
 #include <set>
 
 #include <lgabench/core/environments.hpp>
+#include <lgabench/report/columns.hpp>
 #include <lgabench/report/phi_words.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/report/tables.hpp>
@@ -138,20 +139,7 @@ Section phi(const Material& material) {
   grid.caption =
       "What was selected, against the scenario's true distribution; selected: how many of how many true ones";
   grid.group_head = "scenario";
-  grid.heads = {"command",
-                "method",
-                "about",
-                "answered by",
-                "source",
-                "types: precision",
-                "types: recall",
-                "types: selected",
-                "textures: precision",
-                "textures: recall",
-                "textures: selected",
-                "queries",
-                "a person's seconds"};
-  grid.align = "llllllrrrrrrrr";
+  grid.align = "l";
   std::set<std::string> known;
   std::set<std::size_t> shown;
   for (const Table& table : material.summary.tables)
@@ -163,18 +151,23 @@ Section phi(const Material& material) {
     const PhiOfCommand& phi = row.phi[of.command];
     const std::string place = fmt::format("/{}/", of.command);
     for (const auto& [about, set] : phi.quality) {
-      std::vector<TableCell> cells{command_text(phi.utterance, phi.seen, tell), named(material, row.method), about,
-                                   provenance_words(phi.provenance, phi.erring), phi.source};
+      grid.rows.push_back({row.scenario, {}});
+      put(grid, "command", 'l', command_text(phi.utterance, phi.seen, tell));
+      put(grid, "method", 'l', named(material, row.method));
+      put(grid, "about", 'l', about);
+      put(grid, "answered by", 'l', provenance_words(phi.provenance, phi.erring));
+      put(grid, "source", 'l', phi.source);
       for (const auto& [group, names] : {std::pair("object_types", &set.object_types), {"textures", &set.textures}}) {
         const std::string numbers = fmt::format("{}quality/{}/{}/", place, about, group);
-        cells.emplace_back(phi_number(row, numbers + "precision", names->precision, 2));
-        cells.emplace_back(phi_number(row, numbers + "recall", names->recall, 2));
-        cells.emplace_back(Spans{phi_number(row, numbers + "size", names->size, 0), " of ",
-                                 phi_number(row, numbers + "true_size", names->true_size, 0)});
+        const std::string head = names == &set.textures ? "textures: " : "types: ";
+        put(grid, head + "precision", 'r', phi_number(row, numbers + "precision", names->precision, 2));
+        put(grid, head + "recall", 'r', phi_number(row, numbers + "recall", names->recall, 2));
+        put(grid, head + "selected", 'r',
+            Spans{phi_number(row, numbers + "size", names->size, 0), " of ",
+                  phi_number(row, numbers + "true_size", names->true_size, 0)});
       }
-      cells.emplace_back(phi_number(row, place + "lm_queries", phi.lm_queries, 0));
-      cells.emplace_back(phi_number(row, place + "human_seconds", phi.human_seconds, 0));
-      grid.rows.push_back({row.scenario, std::move(cells)});
+      put(grid, "queries", 'r', phi_number(row, place + "lm_queries", phi.lm_queries, 0));
+      put(grid, "a person's seconds", 'r', phi_number(row, place + "human_seconds", phi.human_seconds, 0));
     }
     const std::string wording = fmt::format("{}, of {}: “{}”", row.scenario, phi.source, phi.asked_as);
     if (worded_otherwise(phi.asked_as, phi.utterance)) known.insert(wording);
