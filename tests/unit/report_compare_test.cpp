@@ -44,6 +44,18 @@ TEST(Compare, EqualRunsDifferInNothing) {
   for (const auto& time : comparison.times) EXPECT_EQ(time.change.difference, 0);
 }
 
+TEST(Compare, RowsThatDifferInTheErrorsOfTheSelectionAreNotPaired) {
+  Spec erring{"lga", 5};
+  erring.selection_errors = {{"missing", .4}};
+  FabricatedRun run;
+  run.add({"lga", 15});
+  run.add(erring);
+  const RunComparison comparison = compared(run, run);
+  EXPECT_EQ(comparison.rows.size(), 2u);
+  EXPECT_EQ(comparison.only_a + comparison.only_b, 0);
+  for (const ComparedRow& row : comparison.rows) EXPECT_TRUE(row.total.same_actions);
+}
+
 TEST(Compare, EpisodesWithoutAnActionAreNotTheSameAction) {
   Spec silent{"lga", 0};
   silent.arms = {{"test", 0, {0}, NAN}, {"hard", 0, {0}, NAN}};
