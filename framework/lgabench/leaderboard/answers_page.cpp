@@ -1,4 +1,4 @@
-#include <lgabench/leaderboard/answers_page.hpp>
+#include <lgabench/leaderboard/suite_page.hpp>
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/perturbations.hpp>
-#include <lgabench/report/perturbation_curves.hpp>
+#include <lgabench/report/curves.hpp>
 #include <lgabench/report/statistics.hpp>
 
 namespace lgabench::leaderboard {

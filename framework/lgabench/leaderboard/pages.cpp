@@ -7,7 +7,6 @@
 #include <set>
 
 #include <lgabench/leaderboard/overview.hpp>
-#include <lgabench/leaderboard/result_tables.hpp>
 #include <lgabench/leaderboard/titles.hpp>
 #include <lgabench/report/about_suite.hpp>
 #include <lgabench/report/names.hpp>

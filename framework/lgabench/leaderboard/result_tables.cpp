@@ -1,4 +1,4 @@
-#include <lgabench/leaderboard/result_tables.hpp>
+#include <lgabench/leaderboard/overview.hpp>
 
 #include <fmt/format.h>
 

@@ -8,7 +8,6 @@
 
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/leaderboard/answer_score.hpp>
-#include <lgabench/leaderboard/answers_page.hpp>
 #include <lgabench/leaderboard/areas.hpp>
 #include <lgabench/leaderboard/board_steps.hpp>
 #include <lgabench/leaderboard/titles.hpp>

@@ -84,6 +84,11 @@ report::Section words_of_the_board();
 /// Entries whose files are all that is known of them, and what they claim; none where there is none.
 std::optional<report::Grid> waiting_grid(const NamedTable& table);
 
+/// What the answers of a table's entries keep, without a policy, language models side by side: rows by scenes exact, a
+/// column for each group of the suite, and the price; then what each got wrong. None where no entry of the table has a
+/// score of its answers.
+std::optional<report::Section> answers_section(const NamedTable& table, const std::string& id);
+
 /// A page for the tables of one suite.
 report::Document suite_document(const std::string& suite, const std::vector<NamedTable>& tables);
 /// What page/leaderboard.js shows.

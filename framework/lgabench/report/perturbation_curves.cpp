@@ -1,4 +1,4 @@
-#include <lgabench/report/perturbation_curves.hpp>
+#include <lgabench/report/curves.hpp>
 
 #include <fmt/format.h>
 

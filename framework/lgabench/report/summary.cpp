@@ -9,10 +9,9 @@
 
 #include <lgabench/core/parallel.hpp>
 #include <lgabench/report/bootstrap.hpp>
-#include <lgabench/report/error_curves.hpp>
+#include <lgabench/report/curves.hpp>
 #include <lgabench/report/names.hpp>
 #include <lgabench/report/pairs.hpp>
-#include <lgabench/report/perturbation_curves.hpp>
 
 namespace lgabench::report {
 namespace {

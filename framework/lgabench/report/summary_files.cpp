@@ -1,8 +1,7 @@
 #include <fmt/format.h>
 
 #include <lgabench/core/environments.hpp>
-#include <lgabench/report/error_curves.hpp>
-#include <lgabench/report/perturbation_curves.hpp>
+#include <lgabench/report/curves.hpp>
 #include <lgabench/report/summary.hpp>
 #include <lgabench/report/writers.hpp>
 

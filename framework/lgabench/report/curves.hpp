@@ -1,12 +1,17 @@
-// Success against the levels of perturbation axes (core/perturbations.hpp): how a policy breaks.
+// Success against a level: of errors that were made in what was selected (abstraction/selection_errors.hpp), and of
+// perturbation axes (core/perturbations.hpp).
 #pragma once
-#include <string>
+#include <array>
 #include <vector>
 
 #include <lgabench/report/results.hpp>
 #include <lgabench/report/summary.hpp>
 
 namespace lgabench::report {
+
+/// Curves of the mean rows of all tables, those of two points or more: of errors of one kind alone. A point at 0 is the
+/// row without errors. In the order of the tables' rows.
+std::vector<ErrorCurve> error_curves(const RunResults& run, const std::vector<Table>& tables);
 
 /// Reference rows that have a curve: what could be done at a level.
 inline constexpr std::array bound_rows{"oracle", "bound"};
@@ -19,7 +24,8 @@ std::vector<PerturbationCurve> perturbation_curves(const RunResults& run, const 
 /// shares of the whole. @pre levels grow, from 1 on
 std::vector<double> trapezoids(const std::vector<int>& levels);
 
-/// As summary.json has it.
+/// As summary.json has them.
+Json to_json(const ErrorCurve& curve);
 Json to_json(const PerturbationCurve& curve);
 
 }  // namespace lgabench::report
