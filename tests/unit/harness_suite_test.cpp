@@ -140,7 +140,7 @@ TEST(Suite, AddsItsArmsToThoseOfEveryScenario) {
       EXPECT_EQ(scenes[i].distractors, scenes[0].distractors) << "only what is seen differs";
   }
   Suite twice = robustness;
-  twice.arms[1]["arm"] = "hard";
+  twice.arms[1].members["arm"] = "hard";
   EXPECT_SAYS(message_of<InputError>([&] { expand(twice, design, {}, catalogue()); }),
               "/tests/2/arm: expected each arm once");
 }
