@@ -165,7 +165,7 @@ class PrintedBlocks(Case):
         after = self.rates()
         self.assertEqual(len(before), 3)
         self.assertEqual([one for one in before if after[one] >= before[one]], [])
-        self.assertIn(f"falls to {after['(mean)']:.2f}", page)
+        self.assertIn(f"falls to {100 * after['(mean)']:.0f} %", page)
 
 
 if __name__ == "__main__":

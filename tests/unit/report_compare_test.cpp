@@ -45,7 +45,7 @@ TEST(Compare, EqualRunsDifferInNothing) {
 }
 
 TEST(Compare, RowsThatDifferInTheErrorsOfTheSelectionAreNotPaired) {
-  Spec erring{"lga", 5};
+  Spec erring{"lga+missing=0.4", 5};
   erring.selection_errors = {{"missing", .4}};
   FabricatedRun run;
   run.add({"lga", 15});

@@ -80,7 +80,8 @@ class FabricatedRun : public TemporaryDirectory {
     std::string word;
     std::getline(words, word, '+');  // the id
     while (std::getline(words, word, '+'))
-      if (const std::string option = word.substr(0, word.find('=')); !options.contains(option))
+      if (const std::string option = word.substr(0, word.find('='));
+          !options.contains(option) && !s.selection_errors.contains(option))
         options[option] = word.substr(word.find('=') + 1);
     return options;
   }
