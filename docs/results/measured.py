@@ -123,9 +123,23 @@ def rivals(suite):
             f"`results/measured/rivals.json` has the intervals.\n\n" + "\n".join(lines) + "\n")
 
 
+def leaks(suite):
+    """Which rules without language find the target of the main arm, and how often at best."""
+    suites = json.loads((MEASURED / "rivals.json").read_text())["suites"]
+    main = json.loads(next((ROOT / "envs").glob(f"*/suites/{suite}.json")).read_text())["about"].get("main_arm")
+    arms = [(name, one) for name, one in suites.items() if name.split("-")[0] == suite]
+    name, arm = [(name, one) for name, one in arms if main is None or name.endswith(f"-{main}")][-1]
+    best = lambda rule: max(one["rate"] for one in arm["rivals"][rule].values())
+    rules = sorted(arm["leaks"], key=best, reverse=True)
+    found = ", ".join(f"{RULES[rule]} {number(best(rule))}" for rule in rules)
+    return (f"Rules without a language model find the target of the main arm (preset `{name.split('-')[1]}`) in a share of scenes above chance, "
+            f"{number(best('random_object'))}: {found} ([all rules](#without-language)).\n")
+
+
 def rewritten(page):
     """The page's text with each marked table made anew."""
-    tables = {"instruction": instruction, "fidelity": fidelity, "unseen_seed": unseen_seed, "rivals": lambda: rivals(page.stem)}
+    tables = {"instruction": instruction, "fidelity": fidelity, "unseen_seed": unseen_seed, "rivals": lambda: rivals(page.stem),
+              "leaks": lambda: leaks(page.stem)}
     return re.sub(r"(<!-- measured:(\w+) -->\n).*?(<!-- /measured -->)", lambda found: f"{found[1]}\n{tables[found[2]]()}\n{found[3]}",
                   page.read_text(), flags=re.S)
 
