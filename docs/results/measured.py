@@ -13,6 +13,8 @@ PAGES = pathlib.Path(__file__).parent
 ROOT = PAGES.parents[1]
 MEASURED = ROOT / "results/measured"
 RUNS = {file.stem: json.loads(file.read_text()) for file in (MEASURED / "runs").glob("*.json")}
+RIVALS = json.loads((MEASURED / "rivals.json").read_text())
+ABOUT = {file.stem: json.loads(file.read_text())["about"] for file in (ROOT / "envs").glob("*/suites/*.json")}
 
 
 def table(heads, lines):
@@ -28,8 +30,8 @@ def number(rate):
     return f"{rate + 1e-9:.2f}"  # 0.125 is 0.13, as the programs print it
 
 
-def interval(of, sign=""):
-    return f"{of['low']:{sign}.2f}, {of['high']:{sign}.2f}"
+def interval(of):
+    return f"{of['low']:.2f}, {of['high']:.2f}"
 
 
 def success(run, method, arm, demonstrations=5):
@@ -78,21 +80,20 @@ def fidelity():
         ["setting (13 scenarios, 3 seeds)", *(f"{name}, 10 to 50" for name in COMPARED), "points within 1.5 error bars", "mean distance", "in error bars"], lines)
 
 
-UNSEEN = {"clutter": "clutter", "few": "few_members", "many": "many_commands"}  # in the names of runs -> suites
+UNSEEN = "clutter", "few_members", "many_commands"
 
 
 def unseen_seed():
     """The steps of the main arms on scenes that no preset publishes."""
     lines = []
-    for name, suite in UNSEEN.items():
-        about = json.loads(next((ROOT / "envs").glob(f"*/suites/{suite}.json")).read_text())["about"]
-        title, arm = about["title"], about["main_arm"]
-        labels, language, truth = (success(f"unseen_seed_{name}{run}", method, arm) for run, method in
+    for suite in UNSEEN:
+        title, arm = ABOUT[suite]["title"], ABOUT[suite]["main_arm"]
+        labels, language, truth = (success(f"unseen_seed_{suite}{run}", method, arm) for run, method in
                                    (("_labels", "taken_features"), ("", "selected_by:lga"), ("", "selected_by:human")))
         share = labels["success"] / truth["success"]
         lines.append([title, *(f"{number(row['success'])} [{interval(row)}]" for row in (labels, language, truth)),
                       f"{number(share)}{'' if share <= .8 else ', above the limit'}"])
-    return commands(*(f"unseen_seed_{name}{run}" for name in UNSEEN for run in ("_labels", ""))) + table(
+    return commands(*(f"unseen_seed_{suite}{run}" for suite in UNSEEN for run in ("_labels", ""))) + table(
         ["suite", "labels", "language", "truth", "labels to truth, limit 0.80"], lines)
 
 
@@ -103,32 +104,34 @@ RULES = {"random_object": "random object in view", "largest": "largest in the pi
           "most_demonstrated": "most demonstrated", "names_and_demonstrated": "names and most demonstrated", "bayes": "Bayes over types, textures, pairs"}
 
 
+def rival_arms(suite):
+    """SUITE-PRESET-ARM -> what was found there, of the suite."""
+    return {name: one for name, one in RIVALS["suites"].items() if name.split("-")[0] == suite}
+
+
 def rivals(suite):
     """What finds the target without a language model and without training."""
-    measured = json.loads((MEASURED / "rivals.json").read_text())
-    arms = {name: one for name, one in measured["suites"].items() if name.split("-")[0] == suite}
-    titles = json.loads(next((ROOT / "envs").glob(f"*/suites/{suite}.json")).read_text())["about"].get("arm_titles", {})
+    arms = rival_arms(suite)
+    titles = ABOUT[suite].get("arm_titles", {})
     heads = []
     for name in arms:
         _, preset, arm = name.split("-")
         heads.append((titles.get(arm) or arm) + ("" if preset == "abstraction" else f" ({preset.removeprefix('abstraction_')})"))
     lines = [f"| share of test scenes, at 1, 5, 20 demonstrations | {' | '.join(heads)} |", "| --- |" + " --- |" * len(arms)]
     for rule in next(iter(arms.values()))["rivals"]:
-        rates = [" ".join(f"{by_number['rate'] + 1e-9:.2f}" for by_number in one["rivals"][rule].values()) for one in arms.values()]
+        rates = [" ".join(number(by_number["rate"]) for by_number in one["rivals"][rule].values()) for one in arms.values()]
         lines.append(f"| {RULES[rule]} | {' | '.join(rates)} |")
     leaks = [", ".join(RULES[rule] for rule in one["leaks"]) or "none" for one in arms.values()]
     lines.append(f"| *more than 0.05 above chance, and has learned no label* | {' | '.join(leaks)} |")
-    return (f"    {measured['command']}\n\nHow often a rule without a language model and without training picks the meant object"
-            f"{' and its receiver' if suite == 'fetch' else ''}, on scenes of seed {measured['scene_seed']}, which no preset publishes; "
+    return (f"    {RIVALS['command']}\n\nHow often a rule without a language model and without training picks the meant object"
+            f"{' and its receiver' if suite == 'fetch' else ''}, on scenes of seed {RIVALS['scene_seed']}, which no preset publishes; "
             f"`results/measured/rivals.json` has the intervals.\n\n" + "\n".join(lines) + "\n")
 
 
 def leaks(suite):
     """Which rules without language find the target of the main arm, and how often at best."""
-    suites = json.loads((MEASURED / "rivals.json").read_text())["suites"]
-    main = json.loads(next((ROOT / "envs").glob(f"*/suites/{suite}.json")).read_text())["about"].get("main_arm")
-    arms = [(name, one) for name, one in suites.items() if name.split("-")[0] == suite]
-    name, arm = [(name, one) for name, one in arms if main is None or name.endswith(f"-{main}")][-1]
+    main = ABOUT[suite]["main_arm"]
+    name, arm = [(name, one) for name, one in rival_arms(suite).items() if name.endswith(f"-{main}")][-1]
     best = lambda rule: max(one["rate"] for one in arm["rivals"][rule].values())
     rules = sorted(arm["leaks"], key=best, reverse=True)
     found = ", ".join(f"{RULES[rule]} {number(best(rule))}" for rule in rules)
