@@ -280,7 +280,7 @@ std::vector<SceneObject> sample_objects(const Request& request, const Streams& s
   return objects;
 }
 
-// Those that targets of the scene are of, where it says so.
+// Types and textures of the members that the scene shows; empty where every member may be shown.
 std::vector<Features> members_to_show(const Scenario& scenario, const SceneRequest& request, const Content& content,
                                       int command) {
   const int shown = content_of(*scenario.train).members;

@@ -105,20 +105,6 @@ class Package(Consumer):
                       "human,gcbc_seg", "--demos", "2", "--seeds", "0", "--episodes", "2", "--set", "*.epochs=2", "--out", out)
         self.assertEqual({row["n_error"] for row in json.loads((out / "summary.json").read_text())["rows"]}, {0})
 
-    def test_opencv_is_found_as_the_page_says(self):
-        """docs/add-a-method.md; Debian's parts of OpenCV come without its CMake package."""
-        page = (self.prefix / "share/doc/lgabench/docs/add-a-method.md").read_text()
-        project, opencv = [block.split("```")[0] for block in page.split("```cmake\n")[1:]]
-        directory = self.dir / "opencv"
-        directory.mkdir()
-        (directory / "CMakeLists.txt").write_text(project + opencv)
-        source = (self.prefix / "share/doc/lgabench/examples/select_only/select_only.cpp").read_text()
-        (directory / "select_only.cpp").write_text("#include <opencv2/imgproc.hpp>\n" + source +
-                                                   "\ndouble area() { return cv::contourArea(cv::Mat(4, 1, CV_32SC2, cv::Scalar(0))); }\n")
-        self.call("cmake", "-S", directory, "-B", directory / "build", f"-DCMAKE_PREFIX_PATH={self.prefix}", "-DCMAKE_BUILD_TYPE=Release")
-        self.call("cmake", "--build", directory / "build")
-        self.assertIn("libopencv_imgproc", self.call("readelf", "-d", directory / "build/select_only.so").stdout)
-
     def test_every_public_header_compiles(self):
         headers = sorted(path.relative_to(self.prefix / "include") for path in self.prefix.glob("include/**/*.hpp"))
         headers.remove(pathlib.Path("lgabench/learning/torch_learner.hpp"))  # needs LibTorch; --full builds own_network with it
@@ -182,6 +168,26 @@ class NewPlugin(Consumer):
         if "ptrace" in said.stdout + said.stderr:
             self.skipTest("no process may be traced here")
         self.assertRegex(said.stdout, r"(?s)Breakpoint 1, .*stepped.cpp:\d+.*\"Bring me the heart.\"")
+
+    def test_opencv_beside(self):
+        """Debian's parts of OpenCV come without its CMake package."""
+        self.lgabench("new-plugin", "with_opencv", "--with", "opencv")
+        with open(self.dir / "with_opencv/with_opencv.cpp", "a") as source:
+            source.write("#include <opencv2/imgproc.hpp>\ndouble area() { return cv::contourArea(cv::Mat(4, 1, CV_32SC2, cv::Scalar(0))); }\n")
+        self.call("cmake", "--workflow", "--preset", "release", cwd=self.dir / "with_opencv")
+        self.assertIn("libopencv_imgproc", self.call("readelf", "-d", self.dir / "with_opencv/build/with_opencv.so").stdout)
+
+    def test_a_network_of_ones_own(self):
+        if FULL:
+            checks = self.check(self.build("my_network", "--with", "torch"), "--set", "epochs=5")
+            self.assertEqual(set(checks.values()), {"ok"})
+        else:
+            self.lgabench("new-plugin", "my_network", "--with", "torch")
+        source = (self.dir / "my_network/my_network.cpp").read_text()
+        self.assertIn("class MyNetwork : public CloningMethod", source)
+        self.assertNotIn("own_network", source.lower())
+        said = self.lgabench("new-plugin", "wrong", "--with", "torch", "--language", "python", expect=2).stderr
+        self.assertIn("--with torch: expected a method in C++", said)
 
     def test_an_engine(self):
         plugin = self.build("my_engine", "--kind", "engine")

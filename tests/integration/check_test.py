@@ -78,9 +78,9 @@ class CheckPlugin(Case):
         self.assertEqual(found["learn"], "none: it selects alone, as --methods selected_by:m asks it to")
 
     def test_tells_what_it_found_before_it_ends_and_where_it_stays(self):
-        process = subprocess.Popen(command_line("check-plugin", FAULTY, "--set", "where=act", "--set", "how=spin", "--timeout", "23"),
+        process = subprocess.Popen(command_line("check-plugin", FAULTY, "--set", "where=act", "--set", "how=sleep", "--timeout", "23"),
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=self.environment, cwd=self.dir)
-        first = process.stderr.readline()  # while the plugin spins
+        first = process.stderr.readline()  # while the plugin sleeps
         self.assertIsNone(process.poll())
         out, _ = process.communicate()
         self.assertRegex(first, r"^still in act after 2\d s; it is stopped after 23 s \(--timeout\)$")

@@ -7,7 +7,7 @@ import json
 import os
 import unittest
 
-from case import BUILD, Case, FULL
+from case import BUILD, Case, FULL, some_of
 
 SHARE = BUILD / "share" / "lgabench"
 FULL = os.environ.get("LGABENCH_FULL") == "1"
@@ -202,7 +202,7 @@ class DrawnCommands(Case):
     def test_they_are_played_and_scored(self):
         suite, _ = self.draw("out", "--n", "8")
         scenes = "3" if FULL else "1"
-        for id in suite["scenarios"]:
+        for id in some_of(suite["scenarios"]):
             said = self.call("check-scenario", f"out/{id}.json", "--scenes", scenes).stdout
             self.assertRegex(said, rf"ok +test, continuous +the oracle succeeds in {scenes} of {scenes}")
         said = self.call("select", "--suite", "out/drawn_1.json", "--score", "--answers", "none", "--scenes", "5").stdout

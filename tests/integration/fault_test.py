@@ -146,7 +146,7 @@ class FaultyPlugins(Faults):
 class Killed(Faults):
     def test_at_random_moments(self):
         moments, kills, runs = random.Random(5), {"parent": 0, "worker": 0, "method": 0}, 0
-        while sum(kills.values()) < (200 if FULL else 10) or min(kills.values()) < 3:
+        while sum(kills.values()) < (200 if FULL else 6) or min(kills.values()) < (3 if FULL else 2):
             runs += 1
             self.assertLess(runs, 400 if FULL else 100, kills)
             out = f"out{runs}"

@@ -322,7 +322,7 @@ class PythonMethods(Case):
         (self.dir / "alone.py").write_text(ALONE)
         rows = "lga,selected_by:lga,selected_by:alone.py:Alone,selected_by:late.py:Late"
         (self.dir / "late.py").write_text(LATE)
-        self.call(*RUN, "--methods", rows, "--set", "*.policy=heat_map", "--out", "out")
+        self.call(*RUN, "--methods", rows, "--set", "*.policy=heat_map", "--set", "*.epochs=20", "--out", "out")
         self.assert_matches_schemas("out")
         cells = {cell["method"]["name"]: (self.dir / "out/cells" / key, cell, status)
                  for key, (cell, status) in self.cells("out").items()}

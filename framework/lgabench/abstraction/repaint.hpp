@@ -11,7 +11,7 @@
 
 namespace lgabench {
 
-/// Values of Observation::ids: objects, and 0 for all that is none.
+/// Values of Observation::ids: instance ids; 0 is background.
 using Ids = std::vector<std::uint8_t>;
 
 /// Ids of the instances that a goal mask of these leaves out, in the order of the instance table.

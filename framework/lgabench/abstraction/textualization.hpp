@@ -14,8 +14,9 @@ struct TextualizationNoise {
 };
 
 /// The observation with the noise's errors: a wrong label is uniform over the others of `space`; a missed instance
-/// leaves the table, its pixels become 0 in ids, and its shadow is nobody's. rgb stays. With both probabilities 0
-/// nothing changes. For equal streams what is wrong at one probability is wrong, in the same way, at every higher one.
+/// leaves the table, its pixels become 0 in ids, and its shadow belongs to no instance. rgb stays. With both
+/// probabilities 0 nothing changes. For equal streams what is wrong at one probability is wrong, in the same way, at
+/// every higher one.
 /// @throws InputError for a probability outside [0, 1].
 Observation imperfect_textualization(Observation observation, const FeatureSpace& space,
                                      const TextualizationNoise& noise, RandomStream stream);

@@ -25,7 +25,7 @@ inline const char* worker_summary(std::string_view verb) {
   return "";
 }
 
-/// Adds all others, and what --help says around them.
+/// Adds every verb that is not in worker_verbs, and the texts of --help around them.
 void add_commands(CLI::App& app, int& exit);
 
 /// Puts the commands that are there below their titles.

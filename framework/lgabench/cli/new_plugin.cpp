@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <memory>
 
 #include <lgabench/cli/verbs.hpp>
@@ -16,9 +17,18 @@ namespace lgabench::cli {
 namespace {
 
 struct NewPluginArguments {
-  std::string name, kind = "method", language = "c++";
+  std::string name, kind = "method", language = "c++", with;
   fs::path directory;
 };
+
+// A library that a method may use beside lgabench's: what CMake says of it.
+struct Library {
+  const char *found, *linked;
+};
+const std::map<std::string, Library> libraries{
+    {"", {"", ""}},
+    {"opencv", {"find_package(OpenCV REQUIRED COMPONENTS core imgproc)\n", " opencv_core opencv_imgproc"}},
+    {"torch", {"find_package(Torch REQUIRED)\n", " ${TORCH_LIBRARIES}"}}};
 
 // my_method -> MyMethod
 std::string class_name(const std::string& name) {
@@ -43,6 +53,8 @@ void new_plugin(const NewPluginArguments& a) {
   expect_name(a.name);
   if (a.language == "python" && a.kind == "engine")
     throw InputError("new-plugin: --language python: expected a method or a perturbation, an engine is in C++");
+  if (!a.with.empty() && (a.kind != "method" || a.language == "python"))
+    throw InputError("new-plugin: --with " + a.with + ": expected a method in C++");
   const fs::path directory = a.directory.empty() ? fs::path(a.name) : a.directory;
   if (std::error_code error; fs::exists(directory, error))
     throw InputError(fmt::format("{}: exists already; nothing was written", directory.string()));
@@ -54,6 +66,8 @@ void new_plugin(const NewPluginArguments& a) {
     write_file(directory / to, filled(read_file(templates / from), {{"@NAME@", a.name},
                                                                     {"@CLASS@", class_name(a.name)},
                                                                     {"@KIND@", a.kind},
+                                                                    {"@FOUND@", libraries.at(a.with).found},
+                                                                    {"@LINKED@", libraries.at(a.with).linked},
                                                                     {"@VERSION@", version},
                                                                     {"@NUMBER@", number},
                                                                     {"@PREFIX@", prefix.string()}}));
@@ -66,15 +80,22 @@ void new_plugin(const NewPluginArguments& a) {
     write(is_axis ? "python_perturbation.README.md.in" : "python.README.md.in", "README.md");
     return;
   }
-  if (a.kind == "engine") {  // a copy of the smallest engine that fulfils the contract
-    const std::string smallest = read_file(data_directory() / "starters" / "kinematic.cpp");
-    write_file(directory / (a.name + ".cpp"), filled(smallest, {{"\"kinematic\"", '"' + a.name + '"'},
-                                                                {"\"kinematic: ", '"' + a.name + ": "},
-                                                                {"KinematicWorld", class_name(a.name)}}));
-    to_stdout("{}\n", (directory / (a.name + ".cpp")).string());
-  } else {
+  const auto write_example = [&](const std::string& example, const std::string& type) {
+    const std::string source = read_file(data_directory() / "starters" / example / (example + ".cpp"));
+    const fs::path to = directory / (a.name + ".cpp");
+    write_file(to, filled(source, {{'"' + example + '"', '"' + a.name + '"'},
+                                   {'"' + example + ": ", '"' + a.name + ": "},
+                                   {"info " + example, "info " + a.name},
+                                   {"set " + example, "set " + a.name},
+                                   {type, class_name(a.name)}}));
+    to_stdout("{}\n", to.string());
+  };
+  if (a.kind == "engine")
+    write_example("kinematic", "KinematicWorld");  // the smallest engine that fulfils the contract
+  else if (a.with == "torch")
+    write_example("own_network", "OwnNetwork");
+  else
     write(a.kind + ".cpp.in", a.name + ".cpp");
-  }
   write(a.kind + ".README.md.in", "README.md");
   write("CMakeLists." + a.kind + ".txt.in", "CMakeLists.txt");
   write("CMakePresets.json.in", "CMakePresets.json");
@@ -91,6 +112,9 @@ void add_new_plugin(CLI::App& app, int& exit) {
               one_of("kind", {"method", "engine", "perturbation", "python"}), with_default);
   verb.option("--language c++|python", a->language, "c++, or python for a method or a perturbation",
               one_of("language", {"c++", "python"}), with_default);
+  verb.option("--with torch|opencv", a->with,
+              "A method in C++ that also links LibTorch, with a network to start from, or OpenCV",
+              one_of("with", {"torch", "opencv"}));
   verb.option("--directory DIR", a->directory, "Where to write it (default: ./NAME); it must not exist yet");
   verb->footer("Example: lgabench new-plugin my_method && cd my_method && cmake --workflow --preset release");
   verb->callback([a, &exit] {

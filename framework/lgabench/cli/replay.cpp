@@ -230,7 +230,7 @@ void add_replay(CLI::App& app, int&) {
   auto a = std::make_shared<ReplayArguments>();
   Verb verb(app, "replay", worker_summary("replay"));
   verb.option("run RUN", a->run, "The run's directory", required);
-  verb.option("episodes KEY/ARM/INDEX...", a->episodes,
+  verb.option("episodes KEY/ARM/INDEX", a->episodes,
               "The cell's key or its first digits, the arm, and the scene's number; without an arm, the "
               "scenario's first arm. Several are drawn beside each other, after what each policy sees",
               required);

@@ -32,8 +32,8 @@ class Learner {
  public:
   virtual ~Learner() = default;
 
-  /// What it makes of the options that a run gives, for so many unaltered samples: a learner with a schedule of its own
-  /// says so. Of `equal_steps` it has no say.
+  /// The schedule to train with, from the options of the run and the number of unaltered samples. A learner with its
+  /// own schedule overrides this. It cannot change `equal_steps`.
   virtual TrainingOptions schedule(const TrainingOptions& asked, int /*samples*/) const { return asked; }
   /// Called once, before the first backward(), with all samples (at least one), which stay as long as it is trained:
   /// means and frames are found here.
@@ -47,8 +47,9 @@ class Learner {
   virtual void update(double learning_rate) = 0;
   /// All trainable numbers, in an order that does not change: what tests compare.
   virtual std::vector<float> parameters() const = 0;
-  /// Names to the archive all that predict() depends on and the constructor does not make, to be written, or to be read
-  /// into a learner made with the same arguments. False: it cannot be saved. @throws InputError for what does not fit.
+  /// Saves or restores, through the archive, the state that predict() needs and the constructor does not make. A
+  /// learner made with the same arguments restores it. False: it cannot be saved. @throws InputError for state that
+  /// does not fit.
   virtual bool learned(Archive& /*archive*/) { return false; }
 };
 

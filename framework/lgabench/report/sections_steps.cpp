@@ -12,7 +12,7 @@ Grid grid_of(const Material& material, const Table& table) {
   grid.name = fmt::format("steps_{}_{}", slug(table.layout), slug(table.engine));
   grid.group_head = "demonstrations";
   grid.heads = {"told", "row", "success", "added", "these commands", "other commands too"};
-  grid.align = "llrrll";
+  grid.align = "lllrrll";
   for (const Steps& one : material.summary.steps) {
     if (one.layout != table.layout || one.engine != table.engine) continue;
     grid.caption =

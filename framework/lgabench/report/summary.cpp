@@ -300,8 +300,8 @@ Table make_table(const Cells& cells) {
   table.demonstrated_commands = cells.front()->demonstrated_commands;
   for (const CellResult* cell : cells) {
     if (cell->demonstrated_commands != table.demonstrated_commands) table.demonstrated_commands = 0;
-    add_new(scenarios, cell->scenario);
-    for (const std::string& arm : cell->arms) add_new(table.arms, arm);
+    append_unique(scenarios, cell->scenario);
+    for (const std::string& arm : cell->arms) append_unique(table.arms, arm);
     grouped[cell->scenario][{cell->kind, display_rank(cell->method), cell->method, cell->demonstrations}].push_back(
         cell);
   }

@@ -186,8 +186,8 @@ struct Summary {
   std::vector<CellResult> failed;                // cells
 };
 
-/// Appends what is not there yet.
-void add_new(std::vector<std::string>& all, const std::string& one);
+/// Appends the string where the list does not hold it yet.
+void append_unique(std::vector<std::string>& all, const std::string& one);
 
 /// Aggregates the cells. Deterministic: the bootstrap's random stream is named after the row.
 Summary summarize(const RunResults& run);

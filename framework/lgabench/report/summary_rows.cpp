@@ -8,7 +8,7 @@
 
 namespace lgabench::report {
 
-void add_new(std::vector<std::string>& all, const std::string& one) {
+void append_unique(std::vector<std::string>& all, const std::string& one) {
   if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
 }
 
@@ -31,7 +31,7 @@ Table Table::without_errors() const {
 std::vector<std::string> Table::scenarios() const {
   std::vector<std::string> all;
   for (const Row& row : rows)
-    if (!row.is_mean()) add_new(all, row.scenario);
+    if (!row.is_mean()) append_unique(all, row.scenario);
   all.emplace_back(mean_scenario);
   return all;
 }
@@ -39,7 +39,7 @@ std::vector<std::string> Table::scenarios() const {
 std::vector<std::string> Table::scenarios_with(const std::string& arm) const {
   std::vector<std::string> all;
   for (const Row& row : rows)
-    if (!row.is_mean() && row.arm == arm && !row.marked("ambiguous")) add_new(all, row.scenario);
+    if (!row.is_mean() && row.arm == arm && !row.marked("ambiguous")) append_unique(all, row.scenario);
   return all;
 }
 
@@ -74,7 +74,7 @@ const Row* Table::find(const std::string& arm, const std::string& scenario, cons
 std::vector<std::string> Table::ids(const std::string& scenario, const std::string& kind) const {
   std::vector<std::string> all;
   for (const Row& row : rows)
-    if (row.scenario == scenario && row.kind == kind) add_new(all, row.method);
+    if (row.scenario == scenario && row.kind == kind) append_unique(all, row.method);
   return all;
 }
 

@@ -75,6 +75,7 @@ void misbehave(const std::string& how) {
     *nowhere = 'x';
   }
   if (how == "spin") spin();
+  if (how == "sleep") ::sleep(600);
   if (how == "allocate") allocate_without_end();
   if (how == "print") {
     std::puts("{\"phase\": \"the fixture's own line\"}");
@@ -149,7 +150,7 @@ LGABENCH_METHOD("fixture_faulty", "0.1", "misbehaves once", Faulty, R"({
   "where": {"default": "act", "help": "in which call", "source": "test fixture", "values": ["select", "learn", "act",
             "destroy"]},
   "how": {"default": "not", "help": "what it does", "source": "test fixture", "values": ["not", "abort", "exit",
-    "quick_exit", "throw", "throw_int", "segfault", "spin", "allocate", "print", "messages", "fork", "fork_and_spin",
+    "quick_exit", "throw", "throw_int", "segfault", "spin", "sleep", "allocate", "print", "messages", "fork", "fork_and_spin",
     "close", "thread", "nan", "exit_4", "throw_huge", "flood", "environment", "scratch_file", "scratch_gone",
     "cells_gone", "link", "log_pipe", "log", "cost", "cost_nan", "long_source", "escape_source"]}
 })")
