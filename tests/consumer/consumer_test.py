@@ -138,8 +138,8 @@ class NewPlugin(Consumer):
 
     @unittest.skipUnless(shutil.which("bwrap"), "bubblewrap is not installed")
     def test_a_strangers_source_is_built_confined(self):
-        """By the commands of docs/contributing.md: no file of ours, variable or port is there, and only the plugin is taken."""
-        commands = (SOURCE / "docs/contributing.md").read_text().split("--detach COMMIT\n")[1].split("\n\n")[0]
+        """By the commands of docs/maintaining.md: no file of ours, variable or port is there, and only the plugin is taken."""
+        commands = (SOURCE / "docs/maintaining.md").read_text().split("--detach COMMIT\n")[1].split("\n\n")[0]
         here = self.dir / "request/trusted"
         here.mkdir(parents=True)
         (here.parent / "installed").symlink_to(self.prefix)

@@ -1,4 +1,4 @@
-"""What a pull request to the board could contain, and what comes of it: the steps of docs/contributing.md on forged entries.
+"""What a pull request to the board could contain, and what comes of it: the steps of docs/maintaining.md on forged entries.
 
 The board is this repository's entries of q2. By hand: python3 forgery_test.py Forgeries
 """
@@ -234,7 +234,7 @@ class Forgeries(Case):
         self.assertIn("0 problems", against(0))
 
     def request(self):
-        """What somebody sends, as docs/contributing.md has it: a worktree beside the one whose build checks it."""
+        """What somebody sends, as docs/maintaining.md has it: a worktree beside the one whose build checks it."""
         self.git("worktree", "add", "-q", "--detach", "request")
         return self.dir / "request/board"
 

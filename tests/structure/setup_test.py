@@ -49,16 +49,28 @@ class Setup(unittest.TestCase):
 
 class WithoutNetwork(unittest.TestCase):
     def test_what_is_skipped_is_said(self):
+        for name, skipped in (("axe", "axe-core could not be fetched, so that pages are not checked for accessibility"),
+                              ("actionlint", "actionlint could not be fetched, so that workflows are not checked by it")):
+            with self.subTest(name), tempfile.TemporaryDirectory() as directory:
+                python = pathlib.Path(directory) / "python3"
+                python.write_text("#!/bin/sh\necho 'Could not resolve host' >&2\nexit 1\n")
+                python.chmod(0o755)
+                done = subprocess.run([SOURCE / "cmake/fetch" / name, f"{directory}/{name}"], capture_output=True, text=True,
+                                      env={**os.environ, "PATH": f"{directory}:{os.environ['PATH']}"})
+                self.assertFalse(os.path.exists(f"{directory}/{name}"))
+                self.assertEqual((done.returncode, done.stdout), (3, ""))
+                self.assertEqual(done.stderr, f"{skipped}: Could not resolve host\n")
+
+    def test_other_bytes_than_the_pinned_ones_are_refused(self):
         with tempfile.TemporaryDirectory() as directory:
             python = pathlib.Path(directory) / "python3"
-            python.write_text("#!/bin/sh\necho 'Could not resolve host' >&2\nexit 1\n")
+            python.write_text("#!/bin/sh\nfor last; do :; done\necho another >\"$last\"\n")  # in the place of what is fetched
             python.chmod(0o755)
-            done = subprocess.run([SOURCE / "cmake/fetch/axe", f"{directory}/axe"], capture_output=True, text=True,
+            done = subprocess.run([SOURCE / "cmake/fetch/actionlint", f"{directory}/actionlint"], capture_output=True, text=True,
                                   env={**os.environ, "PATH": f"{directory}:{os.environ['PATH']}"})
-            self.assertFalse(os.path.exists(f"{directory}/axe"))
-        self.assertEqual((done.returncode, done.stdout), (3, ""))
-        self.assertEqual(done.stderr, "axe-core could not be fetched, so that pages are not checked for accessibility: "
-                                      "Could not resolve host\n")
+            self.assertFalse(os.path.exists(f"{directory}/actionlint"))
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("did NOT match", done.stderr)
 
 
 class MovedClones(unittest.TestCase):

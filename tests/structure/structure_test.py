@@ -1,6 +1,6 @@
 """Checks the architecture on the sources' includes and on the built files' DT_NEEDED entries.
 
-Usage: structure_test.py SOURCE_DIR BUILD_DIR
+Usage: structure_test.py SOURCE_DIR BUILD_DIR [CLASS...]
 """
 import pathlib
 import re
@@ -141,4 +141,4 @@ class Needed(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
