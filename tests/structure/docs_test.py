@@ -418,6 +418,31 @@ class Commands(unittest.TestCase):
                     wrong.append(f"{page.relative_to(SOURCE)}: {line}")
         self.assertEqual(wrong, [])
 
+    def printed(self, command):
+        done = subprocess.run([LGABENCH, *command.split()], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, f"lgabench {command}: {done.stderr}")
+        return done.stdout
+
+    def test_what_relatives_say_of_lgabench_is_what_it_prints(self):
+        """The number before a command is that of its lines, the words in italics are its words; an axis has its numbers at both ends."""
+        page = (SOURCE / "docs/relatives.md").read_text().split("## Benchmarks of 2026")[1].split("\n## ")[0]
+        commands = 0
+        for paragraph in page.replace(" |\n", " |\n\n").split("\n\n"):
+            shown = re.split(r"`lgabench ([^`]+)`", " ".join(paragraph.split()))
+            for before, command in zip(shown[::2], shown[1::2]):
+                said, commands = self.printed(command), commands + 1
+                if number := re.search(r"(\d+)(?: \w+)?: $", before):
+                    self.assertEqual(int(number[1]), len(said.splitlines()), command)
+                words = re.findall(r"\*([^*]+)\*", before)
+                self.assertTrue(number or words, f"{command} shows nothing")
+                self.assertEqual([word for word in words if word not in " ".join(said.split())], [], command)
+        self.assertGreater(commands, 5)
+        axes = [axis for cell in re.findall(r"^\| (`\w+`[^|]*) \|", page, re.M) for axis in re.findall(r"`(\w+)`([^`]*)", cell)]
+        self.assertEqual(sorted(name for name, _ in axes), self.printed("list perturbations").split())
+        for name, ends in axes:
+            levels = re.findall(r"^  level \d +(.*)$", self.printed(f"info {name}"), re.M)
+            numbers = [[float(number) for number in re.findall(r"\d*\.?\d+", text)] for text in (ends, f"{levels[0]} {levels[-1]}")]
+            self.assertIn(numbers[0], ([], numbers[1]), name)
 
     def test_the_page_of_options_is_what_help_says(self):
         with tempfile.TemporaryDirectory() as made:
