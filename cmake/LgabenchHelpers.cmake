@@ -90,7 +90,7 @@ function(lgabench_link_data)
                embeddings:framework/lgabench/learning/embeddings paper:results/paper measured:results/measured formats:docs/formats
                page:framework/lgabench/report/page templates:framework/lgabench/cli/templates starters:examples
                study:framework/lgabench/study/pages protocols:framework/lgabench/study/protocols
-               python:python fetch:cmake/fetch)
+               persons:framework/lgabench/drawn/persons python:python fetch:cmake/fetch)
     string(REPLACE ":" ";" pair ${pair})
     list(GET pair 0 name)
     list(GET pair 1 source)

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include <tabletop/cue.hpp>
+#include <tabletop/rivals.hpp>
 #include <tabletop/task.hpp>
 
 namespace lgabench::tabletop {
@@ -133,8 +134,8 @@ const Content& content_of(const Scenario& scenario, const std::string& arm) {
 }
 
 std::vector<std::string> scenario_members(const Task& task) {
-  std::vector<std::string> names{"never_distractor", "decoys",        "unheard_decoys", "words",
-                                 "undecided",        "near_miss_sets"};
+  std::vector<std::string> names{"never_distractor", "decoys",         "unheard_decoys", "words",
+                                 "undecided",        "near_miss_sets", "persons"};
   append(names, task.scenario_members());
   return names;
 }
@@ -150,6 +151,17 @@ std::vector<std::string> scene_members(const Task& task) {
 
 Content read_content(const Scenario& scenario, const JsonReader& file, const JsonReader* scenes, bool training) {
   Content content;
+  if (file.has("persons") && file.at("persons").boolean()) {
+    if (scenario.as_method_asks) file.at("persons").fail("\"as_method_asks\": false in \"train\" beside it");
+    if (scenario.task != find_task("pick_and_place").id()) file.at("persons").fail("the task pick_and_place beside it");
+    for (const std::string& member : scenario_members(find_task(scenario.task)))
+      if (member != "persons" && file.has(member)) file.at(member).fail("no such member beside \"persons\"");
+    for (const std::string& member : scene_members(find_task(scenario.task)))
+      if (scenes && scenes->has(member)) scenes->at(member).fail("no such member beside \"persons\"");
+    content.persons = read_persons(scenario, file);
+    content.distractors = {4, 4};
+    return content;
+  }
   if (training) content.distractors = {1, 1};
   content.by_meaning = !scenario.commands.front().truth.target.is_product() || file.has("near_miss_sets");
   if (file.has("never_distractor"))

@@ -2,6 +2,7 @@
 #pragma once
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 namespace lgabench::tabletop {
 
 class Task;
+struct Persons;
 
 /// An object of one type and texture that no command means. In training it lies beside the target, so that a policy may
 /// learn to look for it in the target's place.
@@ -53,11 +55,12 @@ struct Content : SceneContent {
   std::vector<FeatureSet> undecided;  // readers differ on these: never drawn
   std::vector<FeatureSet> near_miss_sets;
   double misleading = 1;  // share of the scenes in which a near miss, or a second object that belongs, stands
+  std::shared_ptr<const Persons> persons;              // commands are of persons: rival_objects()
   std::optional<FeatureSet> never_distractor;          // test distractors stay out of it, beyond the true distribution
   std::map<std::string, std::vector<double>> numbers;  // of the task's own members, see Task::read()
 
   /// More stand there than always fit: wide types are left out, and what finds no room is drawn again.
-  bool crowded() const { return others() > 2 || cue; }
+  bool crowded() const { return others() > 2 || cue || persons; }
   /// How many stand beside the target at most.
   int others() const { return distractors.second + (by_meaning ? 3 : 0) + (cue ? cue->count : 0); }
   static constexpr double widest_in_crowd_m = .18;

@@ -10,6 +10,7 @@
 #include <tabletop/cue.hpp>
 #include <tabletop/meant.hpp>
 #include <tabletop/near_misses.hpp>
+#include <tabletop/rivals.hpp>
 #include <tabletop/task.hpp>
 
 namespace lgabench::tabletop {
@@ -379,8 +380,9 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
   const Streams stream = streams_of(scenario, request, index);
 
   set_asked_turn(scene, task.turn_rad(content));
-  scene.objects = content.by_meaning ? meant_objects(scenario, task, layout, content, what.meant.target, stream)
-                                     : placed_objects(what, stream);
+  scene.objects = content.persons      ? rival_objects(scenario, task, layout, content, scene.command, training, stream)
+                  : content.by_meaning ? meant_objects(scenario, task, layout, content, what.meant.target, stream)
+                                       : placed_objects(what, stream);
   if (layout.pallet) scene.objects.push_back({goal_type, goal_texture, role::goal, *layout.pallet, 0, 0});
   permute_ids(scene.objects, stream("ids"));
   if (content.cue && content.cue->place == Cue::Place::gone) take_cue_away(*content.cue, scene.objects);

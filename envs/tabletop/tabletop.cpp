@@ -211,7 +211,7 @@ class TabletopType final : public EnvironmentType {
     constexpr int usual = 2;
     const Content& control = content_of(*scenario.tests.front().scenes);
     const int most = find_task(scenario.task).most_distractors();
-    if (control.by_meaning || control.cue || !control.choice.empty() || most <= usual) return 0;
+    if (control.by_meaning || control.persons || control.cue || !control.choice.empty() || most <= usual) return 0;
     return std::min(most_added, std::max(0, most - control.distractors.second));
   }
   Scene with_distractors(const Scenario& scenario, Scene scene, int count, bool near_miss,
@@ -248,7 +248,7 @@ class TabletopType final : public EnvironmentType {
   // Fixed places cannot show where things lie beside each other, nor more things than they are.
   std::vector<std::string> layouts_of(const Scenario& scenario) const override {
     const Content& train = content_of(*scenario.train);
-    const bool anywhere = train.by_meaning || train.cue || more_bodies(scenario) > 0;
+    const bool anywhere = train.by_meaning || train.persons || train.cue || more_bodies(scenario) > 0;
     std::vector<std::string> ids;
     for (const Layout& layout : find_task(scenario.task).layouts())
       if (!anywhere || layout.target_places.empty()) ids.push_back(layout.id);

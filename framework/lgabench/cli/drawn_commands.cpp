@@ -1,6 +1,7 @@
 // lgabench commands: as many commands as asked for, drawn from a grammar and a lexicon, as scenarios and a suite.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include <lgabench/cli/verbs.hpp>
@@ -15,12 +16,31 @@ namespace {
 struct DrawArguments {
   drawn::DrawRequest request;
   fs::path out, lexicon;
+  int persons = 0;
 };
+
+// In scenarios of so many.
+void draw_persons(const DrawArguments& a) {
+  constexpr int in_scenario = 25;
+  const FeatureSpace space = load_feature_space(drawn::person_grammar_json().at("space"));
+  const drawn::PersonGrammar grammar = drawn::person_grammar(space);
+  const std::string suite = fmt::format("persons_{}", a.request.seed);
+  std::vector<std::string> ids;
+  for (int first = 0; first < a.persons; first += in_scenario) {
+    ids.push_back(fmt::format("{}_{:02}", suite, ids.size() + 1));
+    const auto persons = drawn::draw_persons(grammar, a.request.seed, first, std::min(in_scenario, a.persons - first));
+    write_file(a.out / (ids.back() + ".json"), drawn::readable(drawn::scenario_of(ids.back(), persons, space)));
+  }
+  const fs::path file = a.out / (suite + ".json");
+  write_file(file, drawn::readable(drawn::suite_of_persons(suite, ids)));
+  to_stdout("{}\n\nlgabench run {} --answers none\n", file.string(), file.string());
+}
 
 void draw(const DrawArguments& a) {
   const std::string suite = fmt::format("drawn_{}", a.request.seed);
   if (std::error_code error; fs::exists(a.out, error) && !fs::is_empty(a.out, error))
     throw InputError(fmt::format("--out {}: expected a new or an empty directory", a.out.string()));
+  if (a.persons > 0) return draw_persons(a);
   const drawn::Lexicon lexicon = drawn::load_lexicon(a.lexicon);
   const auto commands = drawn::draw_commands(lexicon, a.request, [&lexicon](const drawn::DrawnCommand& command) {
     return drawn::can_be_shown(drawn::scenario_of(command, lexicon.space));
@@ -47,6 +67,11 @@ void add_drawn_commands(CLI::App& app, int& exit) {
               CLI::Range(drawn::fewest_parts, drawn::most_parts), with_default);
   verb.option("--lexicon FILE", a->lexicon,
               "A file of words and what they hold; by default the shipped lexicon of household");
+  verb.option("--persons N", a->persons, "Draw so many persons with rules that they do not say, in place of commands",
+              CLI::Range(1, 100000))
+      ->excludes("--n")
+      ->excludes("--parts")
+      ->excludes("--lexicon");
   verb.option("--out DIR", a->out, "The directory for the scenarios and their suite, drawn_SEED.json", required);
   verb->footer(
       "docs/own-scenarios.md says what is drawn, docs/formats/lexicon.schema.json how a lexicon is written.\n"

@@ -79,42 +79,17 @@ bool all_in(const std::vector<std::string>& names, const std::vector<std::string
   });
 }
 
-struct Centred {
-  const Instance* instance;
-  double row, column;
-};
+double distance(const Placed& a, const Placed& b) { return std::hypot(a.row - b.row, a.column - b.column); }
 
-double distance(const Centred& a, const Centred& b) { return std::hypot(a.row - b.row, a.column - b.column); }
-
-// Every visible instance, with the centre of its visible pixels.
-std::vector<Centred> centred(const Observation& observation) {
-  struct Sum {
-    double rows = 0, columns = 0, pixels = 0;
-  };
-  std::array<Sum, 256> sums{};
-  const auto columns = static_cast<std::size_t>(observation.size.columns);
-  for (std::size_t i = 0; i < observation.ids.size(); ++i) {
-    Sum& sum = sums[observation.ids[i]];
-    sum.rows += static_cast<double>(i / columns);
-    sum.columns += static_cast<double>(i % columns);
-    ++sum.pixels;
-  }
-  std::vector<Centred> all;
-  for (const Instance& instance : observation.instances)
-    if (const Sum& sum = sums[instance.id]; sum.pixels > 0)
-      all.push_back({&instance, sum.rows / sum.pixels, sum.columns / sum.pixels});
-  return all;
-}
-
-std::vector<Centred> those(const std::vector<Centred>& all, const std::function<bool(const Instance&)>& wanted) {
-  std::vector<Centred> some;
+std::vector<Placed> those(const std::vector<Placed>& all, const std::function<bool(const Instance&)>& wanted) {
+  std::vector<Placed> some;
   std::copy_if(all.begin(), all.end(), std::back_inserter(some),
-               [&wanted](const Centred& one) { return wanted(*one.instance); });
+               [&wanted](const Placed& one) { return wanted(one.instance); });
   return some;
 }
 
 // By how much a candidate is the one: the smallest number is. Nothing for one that the rule does not rank.
-std::optional<double> number_of(const Meaning& meaning, const Centred& one, const std::vector<Centred>& references) {
+std::optional<double> number_of(const Meaning& meaning, const Placed& one, const std::vector<Placed>& references) {
   const Which& which = *meaning.which;
   switch (which.rule) {
     case Rule::leftmost:
@@ -122,12 +97,12 @@ std::optional<double> number_of(const Meaning& meaning, const Centred& one, cons
     case Rule::rightmost:
       return -one.column;
     case Rule::first_in:
-      return static_cast<double>(place_in_order(meaning, one.instance->object_type, one.instance->texture));
+      return static_cast<double>(place_in_order(meaning, one.instance.object_type, one.instance.texture));
     default:
       break;
   }
-  const auto nearer = [&one](const Centred& a, const Centred& b) { return distance(one, a) < distance(one, b); };
-  const Centred& reference = *std::min_element(references.begin(), references.end(), nearer);
+  const auto nearer = [&one](const Placed& a, const Placed& b) { return distance(one, a) < distance(one, b); };
+  const Placed& reference = *std::min_element(references.begin(), references.end(), nearer);
   if (which.rule == Rule::left_of && !(one.column < reference.column)) return std::nullopt;
   if (which.rule == Rule::right_of && !(one.column > reference.column)) return std::nullopt;
   return which.rule == Rule::farthest_from ? -distance(one, reference) : distance(one, reference);
@@ -177,24 +152,46 @@ std::size_t place_in_order(const Meaning& meaning, const std::string& object_typ
                                   order.begin());
 }
 
+std::vector<Placed> placed(const Observation& observation) {
+  struct Sum {
+    double rows = 0, columns = 0, pixels = 0;
+  };
+  std::array<Sum, 256> sums{};
+  const auto columns = static_cast<std::size_t>(observation.size.columns);
+  for (std::size_t i = 0; i < observation.ids.size(); ++i) {
+    Sum& sum = sums[observation.ids[i]];
+    sum.rows += static_cast<double>(i / columns);
+    sum.columns += static_cast<double>(i % columns);
+    ++sum.pixels;
+  }
+  std::vector<Placed> all;
+  for (const Instance& instance : observation.instances)
+    if (const Sum& sum = sums[instance.id]; sum.pixels > 0)
+      all.push_back({instance, sum.rows / sum.pixels, sum.columns / sum.pixels});
+  return all;
+}
+
 std::vector<std::uint8_t> grounded(const Meaning& meaning, const Observation& observation) {
+  return grounded(meaning, placed(observation));
+}
+
+std::vector<std::uint8_t> grounded(const Meaning& meaning, const std::vector<Placed>& visible) {
   const auto belongs = [&meaning](const Instance& one) { return meaning.belongs(one.object_type, one.texture); };
-  const std::vector<Centred> visible = centred(observation);
   std::vector<std::uint8_t> meant;
   if (!meaning.which) {
-    for (const Centred& one : those(visible, belongs)) meant.push_back(one.instance->id);
+    for (const Placed& one : those(visible, belongs)) meant.push_back(one.instance.id);
     return meant;
   }
   const Which& which = *meaning.which;
   const auto matches = [&which](const Instance& one) {
     return which.of && which.of->contains(one.object_type, one.texture);
   };
-  const std::vector<Centred> references = those(visible, matches);
+  const std::vector<Placed> references = those(visible, matches);
   if (which.needs_reference() && references.empty()) return meant;
   std::vector<std::pair<double, std::uint8_t>> ranked;
-  for (const Centred& one : visible) {
-    if (!belongs(*one.instance) || matches(*one.instance) || is_place(one.instance->object_type)) continue;
-    if (const auto number = number_of(meaning, one, references)) ranked.emplace_back(*number, one.instance->id);
+  for (const Placed& one : visible) {
+    if (!belongs(one.instance) || matches(one.instance) || is_place(one.instance.object_type)) continue;
+    if (const auto number = number_of(meaning, one, references)) ranked.emplace_back(*number, one.instance.id);
   }
   if (ranked.empty()) return meant;
   constexpr double tie = .5;  // pixels, or less than a place in an order

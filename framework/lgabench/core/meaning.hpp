@@ -56,12 +56,21 @@ bool operator==(const Meaning& a, const Meaning& b);
 /// @pre the rule is first_in
 std::size_t place_in_order(const Meaning& meaning, const std::string& object_type, const std::string& texture);
 
+/// A visible instance and the mean row and column of its visible pixels.
+struct Placed {
+  Instance instance;
+  double row = 0, column = 0;
+};
+/// All visible instances of an observation, in the table's order.
+std::vector<Placed> placed(const Observation& observation);
+
 /// Ids of the visible instances that are meant, in the table's order: all that belong or, with `which`, the one that
 /// the rule names, and those within half a pixel of it or of the same place in `order`. A centre is the mean row and
 /// column of an instance's visible pixels. Instances that match `of` are references and no candidates; each candidate
 /// counts from the reference nearest to it. Without a reference in view nothing is meant. Place types (`is_place`) are
 /// no candidates of a rule.
 std::vector<std::uint8_t> grounded(const Meaning& meaning, const Observation& observation);
+std::vector<std::uint8_t> grounded(const Meaning& meaning, const std::vector<Placed>& visible);
 
 /// The object type is that of the place which things are brought to, and never the thing that a rule means.
 bool is_place(const std::string& object_type);

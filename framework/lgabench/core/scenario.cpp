@@ -220,7 +220,7 @@ Scenario read_scenario(const Json& json, const std::string& file) {
   const std::vector<std::string> own = environment.scenario_members(task), of_scenes = environment.scene_members(task);
   std::vector<std::string> members = own;
   members.insert(members.end(), {"id", "environment", "task", "feature_space", "commands", "answers_of", "answers",
-                                 "train", "tests", "axes", "truth", "printed", "note"});
+                                 "train", "tests", "questions", "axes", "truth", "printed", "note"});
   reader.only(members);
   if (reader.has("printed")) {
     std::vector<std::string> replaced = own;
@@ -233,6 +233,13 @@ Scenario read_scenario(const Json& json, const std::string& file) {
   s.answers_of = reader.has("answers_of") ? reader.at("answers_of").string() : s.id;
   if (reader.has("answers")) read_answers(reader.at("answers"), s);
   read_train(reader, of_scenes, environment, s);
+  if (reader.has("questions")) {
+    constexpr int most_scenes = 100;
+    const JsonReader questions = reader.at("questions");
+    questions.only({"scenes", "errs"});
+    s.questions = Scenario::Questions{static_cast<int>(questions.at("scenes").integer(1, most_scenes)),
+                                      read_probability(questions.at("errs"))};
+  }
   s.axes = read_plugin_axes(reader);
   for (const JsonReader& arm : reader.at("tests").elements()) {
     s.tests.push_back(

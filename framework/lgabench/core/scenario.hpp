@@ -63,6 +63,13 @@ struct Scenario {
   std::shared_ptr<const SceneContent> train;  // never null
   bool as_method_asks = true;  // training targets and second sets come from the Selection, if the method wants that
   std::vector<Arm> tests;
+  /// People are asked in scenes (HumanAnswers::takes()): the demonstrated ones and so many that nobody demonstrated.
+  /// They err with that probability. None: nobody is.
+  struct Questions {
+    int scenes = 0;
+    double errs = 0;
+  };
+  std::optional<Questions> questions = {};
   PluginAxes axes;  // of plugins, that arms have
   Json json;        // as read, with what the plugins' axes declare: goes into a cell's configuration whole
 

@@ -150,6 +150,53 @@ Json suite_of(const std::string& id, const DrawRequest& request, const std::vect
   return suite;
 }
 
+Json scenario_of(const std::string& id, const std::vector<Person>& persons, const FeatureSpace& space) {
+  Json json{{"id", id},
+            {"environment", "tabletop"},
+            {"task", "pick_and_place"},
+            {"feature_space", space.id},
+            {"commands", Json::array()},
+            {"persons", true},
+            {"questions", {{"scenes", 4}, {"errs", .05}}},
+            {"train", {{"as_method_asks", false}}},
+            {"tests", {{{"arm", "test"}}}}};
+  for (const auto& [utterance, rule] : persons)
+    json["commands"].push_back(
+        {{"utterance", utterance}, {"truth", {{"target", meaning_of(meaning_of(rule, space), space)}}}});
+  return json;
+}
+
+Json suite_of_persons(const std::string& id, const std::vector<std::string>& scenarios) {
+  Json suite = Json::parse(R"({
+    "note": "Persons with rules that they do not say, drawn from a grammar. What their words hold stands in every scene; what they took, and what they say when asked, tells the rule.",
+    "about": {
+      "title": "What a person did not say",
+      "question": "What does a person want who does not say it all?",
+      "main_arm": "test", "main_demonstrations": 3,
+      "arms": {"test": "five objects that the words hold, each of them what another rule means"}},
+    "environment": "tabletop", "layouts": ["continuous"], "engines": ["kinematic"],
+    "methods": [
+      "person_rule+learns=words", "person_rule+learns=common_looks", "person_rule+learns=common_looks+choice=scene",
+      "person_rule", "person_rule+questions=1", "person_rule+questions=2", "person_rule+questions=4",
+      "person_rule+choice=scene", "person_rule+choice=scene+questions=1", "person_rule+choice=scene+questions=2",
+      "person_rule+choice=scene+questions=4", "person_rule+asks=random+questions=1",
+      "person_rule+asks=random+questions=2", "person_rule+asks=random+questions=4", "plga+unlisted=1",
+      "plga_active+unlisted=1+questions=1",
+      "plga_active+unlisted=1+questions=2", "plga_active+unlisted=1+questions=4"],
+    "demonstrations": [0, 1, 2, 3], "seeds": [0], "episodes": 250, "scene_seed": 0,
+    "options": {"*": {"policy": "point"}},
+    "presets": {
+      "abstraction": {},
+      "policy": {"methods": ["person_rule", "person_rule+questions=1", "person_rule+questions=2", "person_rule+questions=4"],
+                 "demonstrations": [1, 2, 3], "engines": ["mujoco"], "options": {"*": {"policy": "centroid"}}},
+      "smoke": {"methods": ["person_rule+learns=words", "person_rule", "person_rule+questions=1"], "demonstrations": [0, 3],
+                "episodes": 50, "smoke": true}}})");
+  suite["id"] = id;
+  suite["scenarios"] = scenarios;
+  suite["presets"]["smoke"]["scenarios"] = {scenarios.front()};
+  return suite;
+}
+
 std::string readable(const Json& json) { return readable(json, 0, 0) + "\n"; }
 
 }  // namespace lgabench::drawn

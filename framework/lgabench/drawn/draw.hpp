@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <lgabench/drawn/grammar.hpp>
+#include <lgabench/drawn/persons.hpp>
 
 namespace lgabench::drawn {
 
@@ -28,6 +29,10 @@ bool can_be_shown(const Json& scenario);
 
 /// A suite of these commands, whose families are its groups.
 Json suite_of(const std::string& id, const DrawRequest& request, const std::vector<DrawnCommand>& commands);
+
+/// Persons as a scenario, with a command of each; and a suite of such scenarios.
+Json scenario_of(const std::string& id, const std::vector<Person>& persons, const FeatureSpace& space);
+Json suite_of_persons(const std::string& id, const std::vector<std::string>& scenarios);
 
 /// JSON as people read it: what fits into a line stands in one.
 std::string readable(const Json& json);

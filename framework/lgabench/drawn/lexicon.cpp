@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <set>
-#include <string_view>
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/meaning.hpp>
@@ -14,13 +13,6 @@ using Names = std::vector<std::string>;
 
 bool has(const Names& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-// A * stands for any text.
-bool fits(std::string_view pattern, std::string_view name) {
-  if (pattern.empty()) return name.empty();
-  if (pattern[0] != '*') return !name.empty() && name[0] == pattern[0] && fits(pattern.substr(1), name.substr(1));
-  return fits(pattern.substr(1), name) || (!name.empty() && fits(pattern, name.substr(1)));
 }
 
 // In the order of the space.
@@ -86,6 +78,12 @@ std::vector<Things> read_things(const JsonReader& list, const FeatureSpace& spac
 }
 
 }  // namespace
+
+bool fits(std::string_view pattern, std::string_view name) {
+  if (pattern.empty()) return name.empty();
+  if (pattern[0] != '*') return !name.empty() && name[0] == pattern[0] && fits(pattern.substr(1), name.substr(1));
+  return fits(pattern.substr(1), name) || (!name.empty() && fits(pattern, name.substr(1)));
+}
 
 Lexicon read_lexicon(const Json& json, const std::string& file) {
   const JsonReader reader(json, file);

@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <lgabench/core/feature_space.hpp>
@@ -39,6 +40,9 @@ struct Lexicon {
   std::vector<Look> looks;
   std::vector<Order> orders;
 };
+
+/// A name that the pattern fits, in which a * stands for any text.
+bool fits(std::string_view pattern, std::string_view name);
 
 /// A lexicon's file; none: the shipped one. @throws InputError with file and place, also for a name that fits nothing,
 /// what is a member and undecided both, and words that two entries have.
