@@ -106,7 +106,7 @@ def anchor(heading):
 def overview(order):
     lines = ["| suite | question | scenarios | demonstrations | policy |", "| --- | --- | --- | --- | --- |"]
     for suite in (SUITES[name] for name in order):
-        policy = "keeps spatial positions" if suite["options"]["*"].get("policy") == "heat_map" else "the paper's network"
+        policy = {"heat_map": "keeps spatial positions", "point": "none is learned"}.get(suite["options"]["*"].get("policy"), "the paper's network")
         lines.append(f"| [`{suite['id']}`](#{anchor(section(suite)[0][3:])}) | {suite['about']['question']} | {len(suite['scenarios'])} | "
                      f"{listed(suite['demonstrations'])} | {policy} |")
     return lines

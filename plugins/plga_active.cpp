@@ -1,10 +1,11 @@
-// PLGA whose person says of one object whether they would take it.
+// PLGA whose person says of objects whether they would take them.
 #include <lgabench/plugin/plugin.hpp>
 
 #include "plga.hpp"
 
-LGABENCH_METHOD_ASKING("accept", "plga_active", "0.1",
-                       "Behaviour cloning on a goal mask of what a person prefers, who was shown one object",
-                       Plga<lgabench::AskPerson::yes>,
+LGABENCH_METHOD_ASKING("accept", "plga_active", "0.2",
+                       "Behaviour cloning on a goal mask of what a person prefers, who was shown objects", Plga,
                        "{" LGABENCH_QUESTIONNAIRE LGABENCH_MEANING_OPTION "," LGABENCH_CLONING_OPTIONS
-                       "," LGABENCH_PICTURE_OPTION "," LGABENCH_MASK_OPTIONS "}")
+                       "," LGABENCH_PICTURE_OPTION "," LGABENCH_MASK_OPTIONS PLGA_UNLISTED
+                       R"(,"questions": {"default": 1, "min": 0, "help": "objects that the person is shown at most",)"
+                       R"("source": "ours"}})")

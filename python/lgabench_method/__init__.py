@@ -112,6 +112,7 @@ class Hypothesis:
     """A preference that a person may have and did not say: in words, and what they then take."""
     text: str
     meaning: Meaning
+    weight: float = 1.  # how likely it is beside the others
 
 
 @dataclass(init=False)
@@ -240,6 +241,17 @@ class HumanAnswers(Protocol):
 
     def accepts(self, command: Command, object_type: str, texture: str) -> bool:
         """Whether the person, shown one object, would take it for that command."""
+
+    def scene(self, command: Command, scene: int) -> list[dict[str, Any]]:
+        """What stands in a scene that the person may be asked about, free of charge: the command's demonstrated ones, from 0, then
+        some that nobody demonstrated. Objects have id, object_type, texture, pixels, and row and column of their middle."""
+
+    def takes(self, command: Command, scene: int, instance: int) -> bool:
+        """Whether the person would take that object there. It counts one of the option `questions`, which() three; more raise
+        Refused."""
+
+    def which(self, command: Command, scene: int) -> Optional[int]:
+        """Id of the one that the person would take there, or None."""
 
 
 class TrainingLog(Protocol):

@@ -67,6 +67,21 @@ class _Human(_Worker):
         return self.ask({"type": "person", "how": "accept", "command": values.command_json(command),
                          "object_type": str(object_type), "texture": str(texture)}, "accepts")["accepts"]
 
+    def scene(self, command, scene):
+        """The objects of a scene that may be asked about, as dicts with id, object_type, texture, pixels, row and column."""
+        return self._in_scene("scene", command, scene)["objects"]
+
+    def takes(self, command, scene, instance):
+        return self._in_scene("takes", command, scene, int(instance))["takes"]
+
+    def which(self, command, scene):
+        """An id, or None."""
+        return self._in_scene("which", command, scene)["instance"]
+
+    def _in_scene(self, how, command, scene, instance=0):
+        return self.ask({"type": "person", "how": how, "command": values.command_json(command), "scene": int(scene),
+                         "instance": instance}, how)
+
     def _person(self, question):
         return values.selection(self.ask(question, "person")["selection"])
 

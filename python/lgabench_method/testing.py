@@ -60,6 +60,15 @@ class NoPeople:
     def accepts(self, command: Command, object_type: str, texture: str) -> bool:
         raise Refused("no person is asked in a test")
 
+    def scene(self, command: Command, scene: int) -> list[dict[str, Any]]:
+        raise Refused("no person is asked in a test")
+
+    def takes(self, command: Command, scene: int, instance: int) -> bool:
+        raise Refused("no person is asked in a test")
+
+    def which(self, command: Command, scene: int) -> Optional[int]:
+        raise Refused("no person is asked in a test")
+
 
 class Curves:
     """Keeps what is logged: `epochs` has (epochs, steps, loss, curves), a tuple for each pass."""

@@ -47,7 +47,7 @@ def meaning(json):
 
 
 def hypotheses(json):
-    return [Hypothesis(one["text"], meaning(one["meaning"])) for one in json]
+    return [Hypothesis(one["text"], meaning(one["meaning"]), one.get("weight", 1)) for one in json]
 
 
 def _meaning_json(value):
@@ -176,8 +176,10 @@ def perceived_frames(value, shape):
 
 def demonstrations(header, descriptor):
     """Pictures are views of the sealed file: they cannot be written to, and last as long as they are used."""
-    memory = mmap.mmap(descriptor, 0, prot=mmap.PROT_READ)
+    memory = mmap.mmap(descriptor, 0, prot=mmap.PROT_READ) if os.fstat(descriptor).st_size else b""  # of no demonstrations
     os.close(descriptor)
+    if not memory:
+        return []
     arrays = {name: numpy.frombuffer(memory, "<" + one["type"], int(numpy.prod(one["shape"])), one["offset"])
               .reshape(one["shape"]) for name, one in header["arrays"].items()}
     words = header["words"]

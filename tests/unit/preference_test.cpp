@@ -43,24 +43,36 @@ Demonstration shown(Observation seen, double from, double to, const std::string&
 
 TEST(Preference, IsWeighedByWhatWasTaken) {
   Preference preference(words, hypotheses, space);
-  EXPECT_EQ(preference.probabilities(), (std::vector<double>{.5, .25, .25}));
-
-  // Of apple, banana and pear (the pallet does not count): 1/2 * .95/2 and twice 1/4 * .95/1. Equal: the broader.
-  preference.took(row_of({{"apple", "red"}, {"banana", "blue"}, {"pear", "red"}, {"pallet", "red"}}), 1);
   for (const double p : preference.probabilities()) EXPECT_NEAR(p, 1.0 / 3, 1e-12);
-  EXPECT_EQ(preference.ranked(), (std::vector<std::size_t>{0, 1, 2}));
 
-  // .95/2, .95/1, and .05/2 of what holds neither: as 19 : 38 : 1.
+  // Of apple, banana and pear (the pallet does not count): .95/2 and twice .95/1. Equal: the narrower, then the first.
+  preference.took(row_of({{"apple", "red"}, {"banana", "blue"}, {"pear", "red"}, {"pallet", "red"}}), 1);
+  EXPECT_NEAR(preference.probabilities()[0], .2, 1e-12);
+  EXPECT_NEAR(preference.probabilities()[2], .4, 1e-12);
+  EXPECT_EQ(preference.ranked(), (std::vector<std::size_t>{1, 2, 0}));
+
+  // .95/2, .95/1, and .05/2 of what holds neither: 1 * 19 : 2 * 38 : 2 * 1.
   preference.took(row_of({{"apple", "blue"}, {"banana", "blue"}}), 1);
   const std::vector<double> after = preference.probabilities();
-  EXPECT_NEAR(after[0], 19.0 / 58, 1e-12);
-  EXPECT_NEAR(after[1], 38.0 / 58, 1e-12);
-  EXPECT_NEAR(after[2], 1.0 / 58, 1e-12);
+  EXPECT_NEAR(after[0], 19.0 / 97, 1e-12);
+  EXPECT_NEAR(after[1], 76.0 / 97, 1e-12);
+  EXPECT_NEAR(after[2], 2.0 / 97, 1e-12);
   EXPECT_EQ(preference.ranked(), (std::vector<std::size_t>{1, 0, 2}));
 
-  // 19 * .05 : 38 * .95 : 1 * .05
+  // 19 * .05 : 76 * .95 : 2 * .05
   preference.said("banana", "red", false);
-  EXPECT_NEAR(preference.probabilities()[1], 36.1 / 37.1, 1e-12);
+  EXPECT_NEAR(preference.probabilities()[1], 72.2 / 73.25, 1e-12);
+}
+
+TEST(Preference, SharesItsPriorByWeightsAndWithWhatNobodyListed) {
+  std::vector<Hypothesis> weighed = hypotheses;
+  weighed[0].weight = 3;  // the words have the mean, 2
+  const std::vector<Hypothesis> unlisted{{"blue", {{"apple", "banana"}, {"blue"}}, 1},
+                                         {"apples, too", {{"apple"}, {"red", "blue"}}, 3}};
+  const Preference preference(words, weighed, space, unlisted, .4);
+  const std::vector<double> expected{.6 * 2 / 6, .6 * 3 / 6 + .4 * 3 / 4, .6 * 1 / 6, .4 * 1 / 4};
+  ASSERT_EQ(preference.candidates().size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(preference.probabilities()[i], expected[i], 1e-12);
 }
 
 TEST(Preference, LeavesOutWhatHoldsTheSameObjects) {
@@ -70,7 +82,60 @@ TEST(Preference, LeavesOutWhatHoldsTheSameObjects) {
   const Preference preference(words, twice, space);
   ASSERT_EQ(preference.candidates().size(), 3u);
   EXPECT_EQ(preference.candidates()[2].text, "what is red");
+  EXPECT_NEAR(preference.probabilities()[1], 2.0 / 5, 1e-12);
   EXPECT_EQ(Preference(words, {}, space).probabilities(), std::vector<double>{1});
+}
+
+
+#define EXPECT_REFUSED(call, words) EXPECT_SAYS(message_of<MethodError>([&] { call; }), words)
+
+Scenario asked_scenario() {
+  Scenario scenario;
+  scenario.id = "asked";
+  ScenarioCommand command;
+  command.utterance = "Bring me some fruit.";
+  command.truth.target = Meaning({"apple"}, {"red", "blue"});
+  scenario.commands = {command};
+  scenario.questions = Scenario::Questions{2, 0};
+  return scenario;
+}
+
+TEST(AskedInScenes, CountsQuestionsAndRefusesWhatCannotBeAsked) {
+  const Scenario scenario = asked_scenario();
+  const Command command = scenario.command(0);
+  int looked = 0;
+  AskedInScenes person(scenario, 1, 5, [&looked](int, int) {
+    ++looked;
+    return std::vector<Placed>{
+        {{1, "apple", "red", 1}, 0, 0}, {{2, "pear", "red", 1}, 0, 5}, {{3, "pallet", "red", 1}, 0, 9}};
+  });
+  EXPECT_TRUE(person.takes(command, 0, 1));
+  EXPECT_FALSE(person.takes(command, 2, 2));
+  EXPECT_EQ(person.which(command, 0), std::optional<std::uint8_t>(1));
+  EXPECT_EQ(looked, 2) << "a scene is drawn once";
+  EXPECT_REFUSED(person.takes(command, 0, 1), "expected at most 5 questions to a person");
+  EXPECT_REFUSED(person.accepts(command, "apple", "red"), "expected at most 5 questions to a person");
+  EXPECT_REFUSED(person.scene(command, 3), "0 to 2, got 3");
+  AskedInScenes other(scenario, 1, 5, [](int, int) { return std::vector<Placed>{{{3, "pallet", "red", 1}, 0, 9}}; });
+  EXPECT_REFUSED(other.takes(command, 0, 3), "expected an object that is in it");
+  EXPECT_EQ(other.which(command, 0), std::nullopt);
+}
+
+TEST(AskedInScenes, ErrsAlikeHoweverOftenItIsAsked) {
+  Scenario scenario = asked_scenario();
+  scenario.questions->errs = .5;
+  const Command command = scenario.command(0);
+  AskedInScenes person(scenario, 100, 1000, [](int, int) {
+    return std::vector<Placed>{{{1, "apple", "red", 1}, 0, 0}, {{2, "pear", "red", 1}, 0, 5}};
+  });
+  int right = 0;
+  for (int i = 0; i < 100; ++i) {
+    const bool said = person.takes(command, i, 1);
+    EXPECT_EQ(said, person.takes(command, i, 1));
+    right += said;
+  }
+  EXPECT_GT(right, 30);
+  EXPECT_LT(right, 70);
 }
 
 // Knows the hypotheses above, or none; counts.
@@ -104,11 +169,11 @@ struct NoLog : TrainingLog {
 
 class Preferred : public testing::Test {
  protected:
-  Selection preferred(const std::vector<Demonstration>& demonstrations, AskPerson ask) {
+  Selection preferred(const std::vector<Demonstration>& demonstrations, int questions) {
     Selection selected;
     selected.target = words;
     return lgabench::preferred({"Bring me some fruit.", "pick_and_place"}, selected, space, demonstrations, services_,
-                               ask);
+                               {questions});
   }
   const std::vector<Demonstration> two_apples{
       shown(row_of({{"pear", "red"}, {"apple", "red"}, {"banana", "blue"}}), 1.5, 0),
@@ -123,30 +188,31 @@ class Preferred : public testing::Test {
 };
 
 TEST_F(Preferred, IsWhatExplainsTheDemonstrationsBest) {
-  EXPECT_EQ(preferred(two_apples, AskPerson::no).target, hypotheses[0].meaning);
+  EXPECT_EQ(preferred(two_apples, 0).target, hypotheses[0].meaning);
   EXPECT_TRUE(person_.asked.empty());
-  EXPECT_EQ(preferred({two_apples[0]}, AskPerson::no).target, words) << "of equals the broader";
+  EXPECT_EQ(preferred({two_apples[0]}, 0).target, hypotheses[0].meaning) << "of equals the narrower, then the first";
   std::vector<Demonstration> of_another_command = two_apples;
   for (Demonstration& one : of_another_command) one.instruction.utterance = "Bring me a pear.";
-  EXPECT_EQ(preferred(of_another_command, AskPerson::no).target, words);
+  EXPECT_EQ(preferred(of_another_command, 0).target, words);
 }
 
 TEST_F(Preferred, ShowsAPersonTheFirstObjectOnWhichTheLikeliestTwoDiffer) {
-  EXPECT_EQ(preferred({two_apples[0]}, AskPerson::yes).target, hypotheses[0].meaning);
-  EXPECT_EQ(person_.asked, std::vector<std::string>{"banana, blue"});
+  const Demonstration among_red = shown(row_of({{"pear", "red"}, {"apple", "red"}, {"banana", "red"}}), 1.5, 0);
+  EXPECT_EQ(preferred({among_red}, 3).target, hypotheses[0].meaning);
+  EXPECT_EQ(person_.asked, std::vector<std::string>{"banana, red"}) << "and nothing else in view tells more";
   person_.asked.clear();
-  preferred({shown(row_of({{"apple", "red"}, {"pear", "red"}}), .5, 0)}, AskPerson::yes);
+  preferred({shown(row_of({{"apple", "red"}, {"pear", "red"}}), .5, 0)}, 1);
   EXPECT_TRUE(person_.asked.empty()) << "nothing in view tells them apart";
 }
 
 TEST_F(Preferred, StaysWhatTheWordsSayWhereNothingTellsMore) {
   services_.shows_truth = false;
-  EXPECT_EQ(preferred(two_apples, AskPerson::yes).target, words);
+  EXPECT_EQ(preferred(two_apples, 1).target, words);
   EXPECT_EQ(model_.asked, 0);
   services_.shows_truth = true;
   model_.known.clear();
   testing::internal::CaptureStdout();
-  EXPECT_EQ(preferred(two_apples, AskPerson::yes).target, words);
+  EXPECT_EQ(preferred(two_apples, 1).target, words);
   EXPECT_SAYS(testing::internal::GetCapturedStdout(), "no hypotheses are known");
   EXPECT_TRUE(person_.asked.empty());
 }

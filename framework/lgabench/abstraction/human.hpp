@@ -1,8 +1,10 @@
 // What a person would select, where no person was asked.
 #pragma once
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <lgabench/core/language_model.hpp>
@@ -24,10 +26,35 @@ class TruthAsHuman : public HumanAnswers {
   /// Whether the object belongs to the true distribution.
   bool accepts(const Command& command, const std::string& object_type, const std::string& texture) override;
 
- private:
+ protected:
   const Selection& truth_of(const Command& command) const;
 
+ private:
   std::vector<ScenarioCommand> commands_;
+};
+
+/// People of a scenario with "questions": the truth stands in for them, and errs as the scenario says, by a hash of the
+/// command and the question. Each answers as many questions as the method's option says.
+class AskedInScenes : public TruthAsHuman {
+ public:
+  /// Of the command's scenes, so many were demonstrated; `look` shows any of them by number, of the command's number.
+  AskedInScenes(const Scenario& scenario, int demonstrations, int most_questions,
+                std::function<std::vector<Placed>(int command, int scene)> look);
+
+  bool accepts(const Command& command, const std::string& object_type, const std::string& texture) override;
+  std::vector<Placed> scene(const Command& command, int scene) override;
+  bool takes(const Command& command, int scene, std::uint8_t instance) override;
+  std::optional<std::uint8_t> which(const Command& command, int scene) override;
+
+ private:
+  void spend(const Command& command, int price);
+
+  int scenes_, most_;
+  double errs_;
+  std::vector<std::string> utterances_;
+  std::function<std::vector<Placed>(int, int)> look_;
+  std::map<std::pair<std::string, int>, std::vector<Placed>> seen_;
+  std::map<std::string, int> spent_;  // by utterance
 };
 
 /// Answers in the one way that a method declares, so that the truth behind a stand-in reaches nobody else.
@@ -40,6 +67,9 @@ class DeclaredHuman : public HumanAnswers {
   Selection specify(const Command& command) override;
   Selection edit(const Command& command, const Selection& proposal) override;
   bool accepts(const Command& command, const std::string& object_type, const std::string& texture) override;
+  std::vector<Placed> scene(const Command& command, int scene) override;
+  bool takes(const Command& command, int scene, std::uint8_t instance) override;
+  std::optional<std::uint8_t> which(const Command& command, int scene) override;
 
  private:
   void expect(const char* asks, const char* call) const;

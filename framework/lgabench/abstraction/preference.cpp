@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 
 #include <lgabench/core/terminal.hpp>
 
@@ -12,28 +14,35 @@ namespace {
 
 constexpr double sure = .95;  // that a person does what they prefer
 
+// By types and textures of each set: a name is looked up once.
 std::vector<bool> pairs_of(const Meaning& meaning, const FeatureSpace& space) {
-  std::vector<bool> pairs;
-  for (const std::string& type : space.object_types)
-    for (const std::string& texture : space.textures)
-      pairs.push_back(!is_place(type) && meaning.belongs(type, texture));
+  const auto held = [](const std::vector<std::string>& names, const std::vector<std::string>& of_space) {
+    std::vector<bool> all;
+    for (const std::string& name : of_space)
+      all.push_back(!is_place(name) && std::find(names.begin(), names.end(), name) != names.end());
+    return all;
+  };
+  std::vector<bool> pairs(space.object_types.size() * space.textures.size(), false);
+  for (const FeatureSet& set : meaning.sets) {
+    const std::vector<bool> types = held(set.object_types, space.object_types),
+                            textures = held(set.textures, space.textures);
+    for (std::size_t i = 0; i < types.size(); ++i)
+      for (std::size_t j = 0; types[i] && j < textures.size(); ++j)
+        if (textures[j]) pairs[i * textures.size() + j] = true;
+  }
   return pairs;
 }
 
 bool can_be_taken(const Instance& instance) { return instance.pixels > 0 && !is_place(instance.object_type); }
 
-const Instance* find(const Observation& seen, std::uint8_t id) {
-  const auto found =
-      std::find_if(seen.instances.begin(), seen.instances.end(), [id](const Instance& one) { return one.id == id; });
-  return found == seen.instances.end() ? nullptr : &*found;
-}
+using Pairs = std::set<std::pair<std::string, std::string>>;  // of types and textures
 
-// The first visible object that one of the two holds and the other does not.
-std::optional<Instance> telling_object(const Meaning& a, const Meaning& b,
+// The first visible object that one of the two holds and the other does not, beside those.
+std::optional<Instance> telling_object(const Meaning& a, const Meaning& b, const Pairs& but,
                                        const std::vector<const Demonstration*>& shown) {
   for (const Demonstration* one : shown)
     for (const Instance& instance : one->steps.at(0).observation.instances)
-      if (can_be_taken(instance) &&
+      if (can_be_taken(instance) && but.count({instance.object_type, instance.texture}) == 0 &&
           a.belongs(instance.object_type, instance.texture) != b.belongs(instance.object_type, instance.texture))
         return instance;
   return std::nullopt;
@@ -42,36 +51,51 @@ std::optional<Instance> telling_object(const Meaning& a, const Meaning& b,
 void log(const Command& command, const Preference& preference) {
   const std::vector<double> probabilities = preference.probabilities();
   to_stdout("\"{}\":\n", command.utterance);
-  for (const std::size_t i : preference.ranked())
-    to_stdout("  {:.3f} {}\n", probabilities[i], one_line(preference.candidates()[i].text));
+  constexpr std::size_t most = 50;
+  const std::vector<std::size_t> ranked = preference.ranked();
+  for (std::size_t i = 0; i < std::min(most, ranked.size()); ++i)
+    to_stdout("  {:.3f} {}\n", probabilities[ranked[i]], one_line(preference.candidates()[ranked[i]].text));
 }
 
 }  // namespace
 
-Preference::Preference(const Meaning& words, const std::vector<Hypothesis>& hypotheses, const FeatureSpace& space) {
-  std::vector<Hypothesis> all{{"what the words say", words}};
-  all.insert(all.end(), hypotheses.begin(), hypotheses.end());
-  for (Hypothesis& one : all) {
+Preference::Preference(const Meaning& words, const std::vector<Hypothesis>& hypotheses, const FeatureSpace& space,
+                       const std::vector<Hypothesis>& unlisted, double share) {
+  const auto sum_of = [](const std::vector<Hypothesis>& some) {
+    return std::accumulate(some.begin(), some.end(), 0.0,
+                           [](double sum, const Hypothesis& one) { return sum + one.weight; });
+  };
+  const double listed = sum_of(hypotheses), rest = sum_of(unlisted);
+  const double of_words = hypotheses.empty() ? 1 : listed / static_cast<double>(hypotheses.size());
+  std::map<std::pair<std::vector<bool>, std::string>, std::size_t> known;
+  const auto add = [&](const Hypothesis& one, double prior) {
     std::vector<bool> pairs = pairs_of(one.meaning, space);
-    bool known = false;
-    for (std::size_t i = 0; i < candidates_.size(); ++i)
-      known = known || (pairs_[i] == pairs && candidates_[i].meaning.which == one.meaning.which);
-    if (known) continue;
-    candidates_.push_back(std::move(one));
-    pairs_.push_back(std::move(pairs));
-  }
-  const double others = std::max<double>(1, static_cast<double>(candidates_.size()) - 1);
-  logs_.assign(candidates_.size(), std::log(.5 / others));
-  logs_.front() = std::log(.5);
+    Meaning rule;
+    rule.which = one.meaning.which;
+    const auto [at, is_new] =
+        known.try_emplace({pairs, rule.which ? canonical(to_json(rule)) : ""}, candidates_.size());
+    if (!is_new) {
+      logs_[at->second] = std::log(std::exp(logs_[at->second]) + prior);
+      return;
+    }
+    candidates_.push_back(one);
+    pairs_.push_back(std::count(pairs.begin(), pairs.end(), true));
+    logs_.push_back(std::log(prior));
+  };
+  if (unlisted.empty()) share = 0;
+  add({"what the words say", words, of_words}, (1 - share) * of_words / (listed + of_words));
+  for (const Hypothesis& one : hypotheses) add(one, (1 - share) * one.weight / (listed + of_words));
+  for (const Hypothesis& one : unlisted) add(one, share * one.weight / rest);
 }
 
 void Preference::took(const Observation& seen, std::uint8_t instance) {
+  const std::vector<Placed> visible = placed(seen);
   const auto in_view = std::count_if(seen.instances.begin(), seen.instances.end(), can_be_taken);
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    std::vector<std::uint8_t> held = grounded(candidates_[i].meaning, seen);
-    held.erase(std::remove_if(held.begin(), held.end(),
-                              [&seen](std::uint8_t id) { return is_place(find(seen, id)->object_type); }),
-               held.end());
+    std::vector<std::uint8_t> held = grounded(candidates_[i].meaning, visible);
+    for (const Placed& one : visible)
+      if (is_place(one.instance.object_type))
+        held.erase(std::remove(held.begin(), held.end(), one.instance.id), held.end());
     const bool holds = std::find(held.begin(), held.end(), instance) != held.end();
     logs_[i] +=
         holds ? std::log(sure / static_cast<double>(held.size())) : std::log((1 - sure) / static_cast<double>(in_view));
@@ -94,9 +118,7 @@ std::vector<double> Preference::probabilities() const {
 
 std::vector<std::size_t> Preference::ranked() const {
   constexpr double digits = 1e9;  // what differs by less is equal
-  const auto rank = [this](std::size_t i) {
-    return std::pair(-std::round(logs_[i] * digits), -std::count(pairs_[i].begin(), pairs_[i].end(), true));
-  };
+  const auto rank = [this](std::size_t i) { return std::pair(-std::round(logs_[i] * digits), pairs_[i]); };
   std::vector<std::size_t> order(candidates_.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&rank](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
@@ -104,29 +126,34 @@ std::vector<std::size_t> Preference::ranked() const {
 }
 
 Selection preferred(const Command& command, const Selection& selected, const FeatureSpace& space,
-                    const std::vector<Demonstration>& demonstrations, Services& services, AskPerson ask) {
+                    const std::vector<Demonstration>& demonstrations, Services& services, const Asking& asking) {
   std::vector<const Demonstration*> shown;
   for (const Demonstration& one : demonstrations)
     if (one.instruction.utterance == command.utterance) shown.push_back(&one);
   if (!services.shows_truth || shown.empty()) return selected;
-  const std::vector<Hypothesis> hypotheses = services.lm.hypotheses(command, space);
-  if (hypotheses.empty()) {
+  const bool asks_model = asking.share < 1 || asking.unlisted.empty();
+  const std::vector<Hypothesis> hypotheses =
+      asks_model ? services.lm.hypotheses(command, space) : std::vector<Hypothesis>();
+  if (asks_model && hypotheses.empty()) {
     to_stdout("\"{}\": no hypotheses are known, what the words say stays\n", command.utterance);
     return selected;
   }
-  Preference preference(selected.target, hypotheses, space);
+  Preference preference(selected.target, hypotheses, space, asking.unlisted, asking.share);
   for (const Demonstration* one : shown)
     if (const auto instance = taken(*one, services.actions)) preference.took(one->steps.at(0).observation, *instance);
   const auto likeliest = [&preference](std::size_t place) {
     return preference.candidates()[preference.ranked()[place]].meaning;
   };
-  if (ask == AskPerson::yes && preference.candidates().size() > 1)
-    if (const auto object = telling_object(likeliest(0), likeliest(1), shown)) {
-      const bool accepts = services.human.accepts(command, object->object_type, object->texture);
-      to_stdout("\"{}\": the person was shown {}, {}, and said {}\n", command.utterance, object->object_type,
-                object->texture, accepts ? "yes" : "no");
-      preference.said(object->object_type, object->texture, accepts);
-    }
+  Pairs asked;
+  for (int i = 0; i < asking.questions && preference.candidates().size() > 1; ++i) {
+    const auto object = telling_object(likeliest(0), likeliest(1), asked, shown);
+    if (!object) break;
+    asked.emplace(object->object_type, object->texture);
+    const bool accepts = services.human.accepts(command, object->object_type, object->texture);
+    to_stdout("\"{}\": the person was shown {}, {}, and said {}\n", command.utterance, object->object_type,
+              object->texture, accepts ? "yes" : "no");
+    preference.said(object->object_type, object->texture, accepts);
+  }
   log(command, preference);
   Selection revised = selected;
   revised.target = likeliest(0);

@@ -8,12 +8,14 @@
 
 namespace lgabench {
 
-/// What the words say and what could stand behind them, weighed by what the person took. The words have a prior of 1/2,
-/// the hypotheses share the rest equally.
+/// What the words say and what could stand behind them, weighed by what the person took. The words have the prior of a
+/// hypothesis of mean weight, and hypotheses are as likely beside each other as their weights say.
 class Preference {
  public:
-  /// What holds the same objects as another before it is left out.
-  Preference(const Meaning& words, const std::vector<Hypothesis>& hypotheses, const FeatureSpace& space);
+  /// What holds the same objects as another before it is left out, and adds to that one's prior. `unlisted`: what
+  /// nobody named and could be so all the same, with a share of the prior for all of them.
+  Preference(const Meaning& words, const std::vector<Hypothesis>& hypotheses, const FeatureSpace& space,
+             const std::vector<Hypothesis>& unlisted = {}, double share = 0);
 
   /// The person took that instance. P = .95 / number of visible objects that a candidate holds if it is one of them,
   /// else .05 / number of visible objects. Place types are neither.
@@ -25,23 +27,27 @@ class Preference {
   const std::vector<Hypothesis>& candidates() const { return candidates_; }
   /// Of each candidate; they add up to 1.
   std::vector<double> probabilities() const;
-  /// Candidates by number: the likeliest first, of equals the one that holds more pairs of the space.
+  /// Candidates by number: the likeliest first, of equals the one that holds fewer pairs of the space.
   std::vector<std::size_t> ranked() const;
 
  private:
   std::vector<Hypothesis> candidates_;
-  std::vector<std::vector<bool>> pairs_;  // of the space, that each holds
-  std::vector<double> logs_;              // of what is proportional to the probabilities
+  std::vector<std::ptrdiff_t> pairs_;  // how many of the space each holds
+  std::vector<double> logs_;           // of what is proportional to the probabilities
 };
 
-/// Whether the person is asked, too.
-enum class AskPerson { no, yes };
+/// What preferred() weighs and asks beside what a language model names.
+struct Asking {
+  int questions = 0;  // at most, to the person
+  std::vector<Hypothesis> unlisted{};
+  double share = 0;  // of `unlisted`; 1: the model is not asked
+};
 
 /// plga: the Selection with the target that explains best what was taken in the command's demonstrations; the Selection
 /// itself where their targets are not the person's (Services::shows_truth) or no hypotheses are known, which the log
-/// says. With AskPerson::yes the person is shown the first visible object of the demonstrations on which the two
-/// likeliest candidates differ, if there is one.
+/// says. At each question the person is shown the first visible object of the demonstrations, shown before to
+/// nobody, on which the two likeliest candidates differ, if there is one.
 Selection preferred(const Command& command, const Selection& selected, const FeatureSpace& space,
-                    const std::vector<Demonstration>& demonstrations, Services& services, AskPerson ask);
+                    const std::vector<Demonstration>& demonstrations, Services& services, const Asking& asking);
 
 }  // namespace lgabench

@@ -4,6 +4,8 @@
 #include <lgabench/abstraction/nobody.hpp>
 #include <lgabench/abstraction/participant.hpp>
 #include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/abstraction/scenes.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -78,6 +80,14 @@ Answers answers_for(const CellJob& job, const Scenario& scenario, ChatClient* se
   if (cell.participant)
     human = std::make_unique<ParticipantAsHuman>(
         read_participant(kept_file(job.answers, cell.participant->sha256, ".json")), scenario);
+  else if (scenario.questions)
+    human = std::make_unique<AskedInScenes>(
+        scenario, cell.demonstrations, cell.method.options.value("questions", 0),
+        [&scenario, &cell](int command, int n) {
+          const int index = n * static_cast<int>(scenario.commands.size()) + command;
+          return placed(find_environment(scenario.environment)
+                            .draw(training_scene(scenario, cell.layout, {}, cell.training_seed, index)));
+        });
   else
     human = std::make_unique<TruthAsHuman>(scenario.commands);
   answers.human = std::make_unique<DeclaredHuman>(std::move(human), cell.method.asks);

@@ -242,7 +242,8 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   phases.begin("sample");
   std::vector<Scene> scenes;
   if (method && !selecting.nothing_to_learn_from()) scenes = training_scenes(scenario, cell, selected);
-  const bool shows = !scenes.empty();
+  // Without demonstrations a method that needs none has its questions, and the words.
+  const bool shows = !scenes.empty() || (method && cell.demonstrations == 0 && !selecting.nothing_to_learn_from());
 
   // 3 demonstrate: the oracle shows it.
   phases.begin("demonstrate");

@@ -12,11 +12,12 @@ std::vector<Hypothesis> read_hypotheses(const JsonReader& reader, const FeatureS
   if (elements.empty() || elements.size() > most) reader.fail(fmt::format("1 to {} hypotheses", most));
   std::vector<Hypothesis> all;
   for (const JsonReader& one : elements) {
-    one.only({"text", "meaning"});
+    one.only({"text", "meaning", "weight"});
     const std::string text = one.at("text").string();
     if (text.empty() || text.size() > longest || text != one_line(text))
       one.at("text").fail(fmt::format("words, in a line of at most {} bytes", longest));
-    all.push_back({text, read_meaning(one.at("meaning"), space)});
+    all.push_back({text, read_meaning(one.at("meaning"), space), one.has("weight") ? one.at("weight").number() : 1});
+    if (!(all.back().weight > 0)) one.at("weight").fail("a number above 0");
   }
   return all;
 }
@@ -33,5 +34,18 @@ std::vector<Hypothesis> LanguageModel::hypotheses(const Command& command, const 
 bool HumanAnswers::accepts(const Command& command, const std::string&, const std::string&) {
   throw MethodError("\"" + command.utterance + "\": expected people who say of an object whether they would take it");
 }
+
+namespace {
+
+[[noreturn]] void refuse_scenes(const Command& command) {
+  throw MethodError("\"" + command.utterance +
+                    "\": expected a scenario with \"questions\", whose people are asked in scenes");
+}
+
+}  // namespace
+
+std::vector<Placed> HumanAnswers::scene(const Command& command, int) { refuse_scenes(command); }
+bool HumanAnswers::takes(const Command& command, int, std::uint8_t) { refuse_scenes(command); }
+std::optional<std::uint8_t> HumanAnswers::which(const Command& command, int) { refuse_scenes(command); }
 
 }  // namespace lgabench

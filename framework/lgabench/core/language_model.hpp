@@ -1,5 +1,7 @@
 // Who can be asked which features matter.
 #pragma once
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,10 +22,11 @@ struct Question {
 struct Hypothesis {
   std::string text;
   Meaning meaning;
+  double weight = 1;  // how likely it is beside the others, above 0
 };
 
-/// Reads [{"text", "meaning"}, ...]: 1 to 50, each text a line. @throws InputError with file and place, as
-/// read_meaning().
+/// Reads [{"text", "meaning", "weight"}, ...]: 1 to 50, each text a line, no weight being 1. @throws InputError with
+/// file and place, as read_meaning().
 std::vector<Hypothesis> read_hypotheses(const JsonReader& reader, const FeatureSpace& space);
 
 /// A language model that answers for one command. One thread.
@@ -54,6 +57,9 @@ class LanguageModel {
   virtual SelectionCost cost() const = 0;
 };
 
+/// As many questions of yes and no is one which() worth.
+inline constexpr int price_of_which = 3;
+
 /// A person's Selection: proposed to, or edited by them. Stands on the true distribution unless real answers are given.
 class HumanAnswers {
  public:
@@ -66,6 +72,16 @@ class HumanAnswers {
   /// Whether the person, shown one object, would take it for that command. @throws MethodError for people who are asked
   /// for Selections alone.
   virtual bool accepts(const Command& command, const std::string& object_type, const std::string& texture);
+  /// A scene that a person may be asked about: the command's demonstrated ones in their order, from 0, and then some
+  /// that nobody demonstrated. Looking costs nothing. This and the following @throw MethodError where the scenario has
+  /// no "questions", for a scene that there is not, an object that is not in it, and for more questions to the
+  /// command's person than the method's option `questions` says, of which accepts() and takes() are one, which() three.
+  virtual std::vector<Placed> scene(const Command& command, int scene);
+  /// Whether the person would take that object in that scene. They err at times, in the same way however often they
+  /// are asked.
+  virtual bool takes(const Command& command, int scene, std::uint8_t instance);
+  /// Which one they would take there, or none.
+  virtual std::optional<std::uint8_t> which(const Command& command, int scene);
 };
 
 }  // namespace lgabench

@@ -120,7 +120,7 @@ Design apply(const JsonReader& overrides, Design design) {
   if (overrides.has("methods")) design.methods = distinct_names(overrides.at("methods"));
   if (overrides.has("demonstrations"))
     design.demonstrations = distinct_values<int>(overrides.at("demonstrations"), [](const JsonReader& n) {
-      return static_cast<int>(n.integer(1, largest_count));
+      return static_cast<int>(n.integer(0, largest_count));
     });
   if (overrides.has("seeds"))
     design.seeds = distinct_values<std::uint64_t>(overrides.at("seeds"), [](const JsonReader& n) {

@@ -237,7 +237,7 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
               for (const SelectionErrors& errors : all_errors)
                 if (errors.none() || !has(suite.selects_nothing, method.id)) add(method, n, seed, errors);
             for (const Competitor& row : references)
-              if (learns(row)) add(row, n, seed);
+              if (learns(row) && n > 0) add(row, n, seed);
           }
         for (const Competitor& row : references)
           if (!learns(row))

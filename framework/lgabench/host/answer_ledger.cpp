@@ -118,7 +118,7 @@ void AnswerLedger::suppose(const std::vector<Hypothesis>& hypotheses) {
   if (hypotheses.empty()) return;
   if (answers_.empty()) keep(model_);
   std::vector<Selection> first;
-  for (const auto& [text, meaning] : hypotheses) {
+  for (const auto& [text, meaning, weight] : hypotheses) {
     Selection supposed = model_;
     supposed.target = meaning;
     supposed.second = answers_.back().second;
@@ -144,8 +144,9 @@ Json AnswerLedger::signed_reply(const Command& command) {
 Json AnswerLedger::ask_person(const JsonReader& reader) {
   const auto [how, command, proposal] = protocol::read_or_malformed([&] {
     const std::string word = reader.at("how").string();
-    if (word != "specify" && word != "edit" && word != "accept" && word != "truth")
-      reader.at("how").fail("specify, edit, accept or truth");
+    if (word != "specify" && word != "edit" && word != "accept" && word != "truth" && word != "scene" &&
+        word != "takes" && word != "which")
+      reader.at("how").fail("specify, edit, accept, truth, scene, takes or which");
     return std::tuple(word, protocol::read_command(reader.at("command")),
                       word == "edit" ? protocol::read_selection(reader.at("proposal")) : Selection());
   });
@@ -154,6 +155,20 @@ Json AnswerLedger::ask_person(const JsonReader& reader) {
         [&] { return std::pair(reader.at("object_type").string(), reader.at("texture").string()); });
     ++accepts_;
     return {{"type", "accepts"}, {"accepts", services_.human.accepts(command, type, texture)}};
+  }
+  if (how == "scene" || how == "takes" || how == "which") {
+    const auto [scene, instance] = protocol::read_or_malformed([&] {
+      constexpr long long most = 1 << 20;
+      return std::pair(static_cast<int>(reader.at("scene").integer(-most, most)),
+                       how == "takes" ? static_cast<std::uint8_t>(reader.at("instance").integer(0, 255)) : 0);
+    });
+    if (how == "scene")
+      return {{"type", "scene"}, {"objects", protocol::to_json(services_.human.scene(command, scene))}};
+    accepts_ += how == "takes" ? 1 : price_of_which;
+    if (how == "takes")
+      return {{"type", "takes"}, {"takes", services_.human.takes(command, scene, static_cast<std::uint8_t>(instance))}};
+    const std::optional<std::uint8_t> one = services_.human.which(command, scene);
+    return {{"type", "which"}, {"instance", one ? Json(*one) : Json()}};
   }
   const Selection answered = how == "edit"    ? services_.human.edit(command, account(proposal))
                              : how == "truth" ? services_.truth(command)

@@ -112,14 +112,37 @@ Question read_question(const JsonReader& reader, const Command& command) {
 
 Json to_json(const std::vector<Hypothesis>& hypotheses) {
   Json all = Json::array();
-  for (const auto& [text, meaning] : hypotheses) all.push_back({{"text", text}, {"meaning", to_json(meaning)}});
+  for (const auto& [text, meaning, weight] : hypotheses)
+    all.push_back({{"text", text}, {"meaning", to_json(meaning)}, {"weight", weight}});
+  return all;
+}
+
+Json to_json(const std::vector<Placed>& objects) {
+  Json all = Json::array();
+  for (const auto& [instance, row, column] : objects)
+    all.push_back({{"id", instance.id},
+                   {"object_type", instance.object_type},
+                   {"texture", instance.texture},
+                   {"pixels", instance.pixels},
+                   {"row", row},
+                   {"column", column}});
+  return all;
+}
+
+std::vector<Placed> read_placed(const JsonReader& reader) {
+  std::vector<Placed> all;
+  for (const JsonReader& one : reader.elements())
+    all.push_back({{static_cast<std::uint8_t>(one.at("id").integer(0, 255)), one.at("object_type").string(),
+                    one.at("texture").string(), static_cast<int>(one.at("pixels").integer(0, 1 << 30))},
+                   one.at("row").number(),
+                   one.at("column").number()});
   return all;
 }
 
 std::vector<Hypothesis> read_hypotheses(const JsonReader& reader) {
   std::vector<Hypothesis> all;
   for (const JsonReader& one : reader.elements())
-    all.push_back({one.at("text").string(), read_unchecked_meaning(one.at("meaning"))});
+    all.push_back({one.at("text").string(), read_unchecked_meaning(one.at("meaning")), one.at("weight").number()});
   return all;
 }
 

@@ -43,6 +43,8 @@ Json to_json(const Question& question, const Command& command);
 Question read_question(const JsonReader& reader, const Command& command);
 
 Json to_json(const std::vector<Hypothesis>& hypotheses);
+Json to_json(const std::vector<Placed>& objects);
+std::vector<Placed> read_placed(const JsonReader& reader);
 std::vector<Hypothesis> read_hypotheses(const JsonReader& reader);
 
 Json to_json(const SelectionCost& cost);

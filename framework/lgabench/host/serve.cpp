@@ -116,11 +116,31 @@ class RemoteHuman : public HumanAnswers {
                             "accepts");
     return JsonReader(frame.header, "accepts").at("accepts").boolean();
   }
+  std::vector<Placed> scene(const Command& command, int scene) override {
+    return protocol::read_placed(JsonReader(in_scene("scene", command, scene).header, "scene").at("objects"));
+  }
+  bool takes(const Command& command, int scene, std::uint8_t instance) override {
+    return JsonReader(in_scene("takes", command, scene, instance).header, "takes").at("takes").boolean();
+  }
+  std::optional<std::uint8_t> which(const Command& command, int scene) override {
+    const Frame frame = in_scene("which", command, scene);
+    const JsonReader one = JsonReader(frame.header, "which").at("instance");
+    return one.json().is_null() ? std::nullopt : std::optional(static_cast<std::uint8_t>(one.integer(0, 255)));
+  }
   Selection truth(const Command& command) {
     return person({{"type", "person"}, {"how", "truth"}, {"command", protocol::to_json(command)}});
   }
 
  private:
+  Frame in_scene(const char* how, const Command& command, int scene, int instance = 0) {
+    return ask(channel_,
+               {{"type", "person"},
+                {"how", how},
+                {"command", protocol::to_json(command)},
+                {"scene", scene},
+                {"instance", instance}},
+               how);
+  }
   Selection person(const Json& question) {
     const Frame frame = ask(channel_, question, "person");
     return protocol::read_selection(JsonReader(frame.header, "person").at("selection"));

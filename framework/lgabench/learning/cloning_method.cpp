@@ -6,6 +6,7 @@
 #include <cstring>
 #include <memory>
 
+#include <lgabench/learning/pointing.hpp>
 #include <lgabench/learning/policies.hpp>
 #include <lgabench/learning/shown_input.hpp>
 #include <lgabench/learning/training.hpp>
@@ -152,6 +153,7 @@ std::unique_ptr<Learner> CloningMethod::learner(const SampleShape& shape, const 
 
 std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& demonstrations, Services& services) {
   const CloningOptions options = read_cloning_options(services.options);
+  if (options.points) return pointing_policy(services.actions);
   PolicyInputs offered = offered_by(inputs(services.options), options);
   const PictureSize native = picture_size(demonstrations);
   PolicyInputs seen = inputs_of(options.policy, offered, native);

@@ -55,9 +55,9 @@
   R"(}, "mask": {"framework": true, "default": "binary", "values": ["binary", "signed"], )"                       \
   R"("help": "1 on all that matters; signed: -1 on what is to be avoided and is not the target",)"                \
   R"("source": "signed: paper, footnote on cost maps")" of_mask R"(}, )" LGABENCH_POLICY_OPTION_(                 \
-      R"("regression", "centroid", "heat_map")",                                                                  \
-      "centroid: no training, the middle of the target. The latter two see target and avoid set apart, and "      \
-      "ignore options of the training",                                                                           \
+      R"("regression", "centroid", "heat_map", "point")",                                                         \
+      "centroid: no training, the middle of the target. These two see target and avoid set apart, and ignore "    \
+      "options of the training. point: no policy is learned, what the Selection keeps is taken as it stands",     \
       of_policy)
 
 /// In place of LGABENCH_MASK_OPTIONS, for a method without a goal mask.

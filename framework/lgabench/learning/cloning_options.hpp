@@ -18,6 +18,7 @@ struct CloningOptions {
   Instances instances = Instances::all;
   bool signed_mask = false;
   PolicyKind policy = PolicyKind::regression;
+  bool points = false;  // policy=point: nothing is trained
 };
 
 /// Those of the paper's network. A learner of a method's own does not read them, and its descriptor may have others of

@@ -136,6 +136,7 @@ Document report_document(const Material& material) {
     if (!section.blocks.empty()) document.sections.push_back(std::move(section));
   };
   add(steps(material));
+  add(regret(material));
   for (Section& section : success(material)) add(std::move(section));
   add(selection_errors(material));
   add(perturbations(material));

@@ -361,6 +361,7 @@ Summary summarize(const RunResults& run) {
   summary.error_curves = error_curves(run, summary.tables);
   summary.perturbations = perturbation_curves(run, summary.tables);
   summary.steps = all_steps(run, summary.tables, about);
+  summary.regrets = regrets(run);
   return summary;
 }
 

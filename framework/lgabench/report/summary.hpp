@@ -9,6 +9,7 @@
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/report/paper.hpp>
+#include <lgabench/report/regret.hpp>
 #include <lgabench/report/results.hpp>
 #include <lgabench/report/statistics.hpp>
 #include <lgabench/report/steps.hpp>
@@ -182,6 +183,7 @@ struct Summary {
   std::vector<Table> tables;
   std::vector<ErrorCurve> error_curves;
   std::vector<PerturbationCurve> perturbations;  // by table, method, demonstrations, axis
+  std::vector<Regret> regrets;                   // of a suite of persons
   std::vector<Steps> steps;                      // pixels, labels, language, truth
   std::vector<CellResult> failed;                // cells
 };

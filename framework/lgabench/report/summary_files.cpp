@@ -78,6 +78,7 @@ Json to_json(const Summary& summary) {
   for (const ErrorCurve& curve : summary.error_curves) json["error_curves"].push_back(to_json(curve));
   for (const PerturbationCurve& curve : summary.perturbations) json["perturbations"].push_back(to_json(curve));
   for (const Steps& steps : summary.steps) json["steps"].push_back(to_json(steps));
+  for (const Regret& regret : summary.regrets) json["regret"].push_back(to_json(regret));
   return json;
 }
 
