@@ -22,6 +22,13 @@ DESCRIPTION = """A benchmark of language-guided abstraction: scenes to step, as 
 `import lgabench, gymnasium; env = gymnasium.make("lgabench/heart-v1")`, `python -m lgabench run q1 --preset smoke`;
 docs/python.md in the repository says the rest."""
 
+ENTRY_POINTS = """[console_scripts]
+lgabench = lgabench.__main__:main
+
+[inspect_ai]
+lgabench = lgabench.inspect_tasks
+"""
+
 
 def run(*words):
     return subprocess.run(list(map(str, words)), check=True, capture_output=True, text=True).stdout
@@ -69,7 +76,7 @@ Requires-Dist: h5py; extra == "data"
 {DESCRIPTION}
 """)
     (about / "WHEEL").write_text(f"Wheel-Version: 1.0\nGenerator: lgabench\nRoot-Is-Purelib: false\nTag: {tag}\n")
-    (about / "entry_points.txt").write_text("[console_scripts]\nlgabench = lgabench.__main__:main\n")
+    (about / "entry_points.txt").write_text(ENTRY_POINTS)
     return about
 
 

@@ -10,7 +10,7 @@ import unittest
 
 from case import BUILD, Case, FIXTURES, PROGRAM, command_line, some_of
 
-VERBS = ["list", "info", "select", "render", "demos", "run", "open", "report", "compare", "verify", "attribute", "merge", "cluster", "status",
+VERBS = ["list", "info", "select", "answers", "render", "demos", "run", "open", "report", "compare", "verify", "attribute", "merge", "cluster", "status",
          "leaderboard", "new-plugin", "check-plugin", "commands", "study", "encoder", "cache"]
 PLUGIN = ["--plugin-path", FIXTURES / "good"]
 # Cells without training, for milliseconds.

@@ -51,6 +51,7 @@ void add_commands(CLI::App& app, int& exit) {
   add_cluster(app, exit);
   add_status(app, exit);
   add_leaderboard(app, exit);
+  add_answers(app, exit);
   add_new_plugin(app, exit);
   add_check_plugin(app, exit);
   add_new_scenario(app, exit);
@@ -62,7 +63,7 @@ void add_commands(CLI::App& app, int& exit) {
 
 void arrange_commands(CLI::App& app) {
   const std::pair<const char*, std::vector<const char*>> titles[] = {
-      {"To look around", {"list", "info", "select", "render", "demos", "replay"}},
+      {"To look around", {"list", "info", "select", "answers", "render", "demos", "replay"}},
       {"To run and to compare", {"run", "open", "report", "compare", "verify", "attribute"}},
       {"To run on many machines", {"cluster", "status", "merge"}},
       {"To publish", {"leaderboard"}},

@@ -51,6 +51,7 @@ void add_encoder(CLI::App& app, int& exit);
 void add_new_scenario(CLI::App& app, int& exit);
 void add_drawn_commands(CLI::App& app, int& exit);
 void add_study(CLI::App& app, int& exit);
+void add_answers(CLI::App& app, int& exit);
 
 // In `lgabench-worker`, which `lgabench` starts for them.
 void add_cell(CLI::App& app, int& exit);

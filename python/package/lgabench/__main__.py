@@ -19,6 +19,9 @@ def typed() -> str:
 
 def main() -> None:
     words = sys.argv[1:]
+    if words[:1] == ["answers"]:  # of a harness's log too
+        from lgabench import evals
+        sys.exit(evals.answers(words[1:]))
     if words and words[0] in PLAYS and not any(word.split("=")[0] == "--python" for word in words):
         words = [*words, "--python", sys.executable]
     os.execv(PROGRAM, [typed(), *words])

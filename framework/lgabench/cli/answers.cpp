@@ -1,0 +1,177 @@
+// lgabench answers: a suite's questions for another program to ask, and that program's replies as a cassette.
+#include <fmt/format.h>
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <lgabench/abstraction/chat_model.hpp>
+#include <lgabench/abstraction/select_features.hpp>
+#include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/hash.hpp>
+#include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/expand.hpp>
+#include <lgabench/harness/suite.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+const std::vector<std::string> forms{"flat", "structured"};
+
+struct AnswersArguments {
+  std::string suite, form = forms.front(), model, request;
+  fs::path questions, from, cassette;
+};
+
+template <class Use>
+void with_each_command(const std::string& suite_id, Use&& use) {
+  const Suite suite = load_suite(suite_id);
+  for (const std::string& id : suite_scenario_ids(suite, suite.design)) {
+    const Scenario scenario = suite_scenario(suite, id, Truth::released);
+    for (int c = 0; c < static_cast<int>(scenario.commands.size()); ++c) use(scenario.command(c), scenario.space);
+  }
+}
+
+// What names a question: its words, so that a reply to other words is none to it.
+std::string id_of(const std::string& system, const std::string& user) {
+  constexpr std::size_t digits = 16;
+  return sha256(canonical({{"system", system}, {"user", user}})).substr(0, digits);
+}
+
+// Each question once, a line each: what names it, what it is about, and the two messages that a model is shown.
+void write_questions(const AnswersArguments& a) {
+  const bool structured = a.form == "structured";
+  const PromptTemplate yes_or_no, of_meaning("meaning.txt");
+  std::string lines;
+  std::set<std::string> seen;
+  with_each_command(a.suite, [&](const Command& command, const FeatureSpace& space) {
+    const auto add = [&](const Prompt& prompt, const std::string& about) {
+      const std::string id = id_of(prompt.system, prompt.user);
+      if (!seen.insert(id).second) return;
+      lines += canonical({{"suite", a.suite},
+                          {"form", a.form},
+                          {"id", id},
+                          {"command", command.utterance},
+                          {"about", about},
+                          {"system", prompt.system},
+                          {"user", prompt.user}}) +
+               '\n';
+    };
+    if (structured) add(of_meaning.fill(command, space), "what it means");
+    for (const Question& question : feature_questions(command, space))
+      if (!structured || question.about == Question::About::second)
+        add(yes_or_no.fill(command, space, question), question.candidate);
+  });
+  write_file(a.questions, lines);
+  to_stdout("{}: {} questions\n", a.questions.string(), seen.size());
+}
+
+// In place of a server: says of a question what the file has. Asked again, as after a reply that cannot be read, it
+// says the same.
+class GivenReplies : public ChatClient {
+ public:
+  explicit GivenReplies(const fs::path& file) : file_(file) {
+    int number = 0;
+    for (const Json& line : parse_json_lines(read_file(file), file.string())) {
+      const JsonReader reader(line, fmt::format("{}: line {}", file.string(), ++number));
+      const std::string form = reader.at("form").string();
+      if (form != forms[0] && form != forms[1]) reader.at("form").fail("flat or structured");
+      asked_.insert({reader.at("suite").string(), form});
+      const std::string id = reader.at("id").string();
+      if (reader.has("system") && id_of(reader.at("system").string(), reader.at("user").string()) != id)
+        reader.fail("the messages of --questions; the model was shown others");
+      ChatReply reply{reader.at("reply").string()};
+      if (reader.has("tokens")) reply.tokens = reader.at("tokens").integer(0, 1LL << 40);
+      if (reader.has("seconds")) reply.seconds = reader.at("seconds").number();
+      const auto [there, is_new] = replies_.insert({id, std::move(reply)});
+      if (!is_new && there->second.text != line.at("reply")) reader.fail("one reply to each question");
+    }
+    if (asked_.empty()) throw InputError(fmt::format("{}: expected a line for each question", file.string()));
+  }
+
+  ChatReply complete(const Json& request) override {
+    const Json& messages = request.at("messages");
+    const auto found = replies_.find(id_of(messages.at(0).at("content"), messages.at(1).at("content")));
+    if (found == replies_.end()) throw NoAnswer(fmt::format("no reply in {}", file_.string()));
+    return found->second;
+  }
+
+  /// Suite and form of its questions.
+  const std::set<std::pair<std::string, std::string>>& asked() const { return asked_; }
+
+ private:
+  fs::path file_;
+  std::set<std::pair<std::string, std::string>> asked_;
+  std::map<std::string, ChatReply> replies_;  // by id
+};
+
+void keep_replies(const AnswersArguments& a) {
+  GivenReplies replies(a.from);
+  Cassette cassette(a.cassette);
+  ChatOptions options{to_text(asked_model(a.model, a.request))};
+  options.concurrency = 1;
+  ChatLanguageModel model(cassette, &replies, options);
+  std::vector<std::string> unanswered;
+  std::string next;
+  for (const auto& [suite, form] : replies.asked()) {
+    with_each_command(suite, [&, &way = form](const Command& command, const FeatureSpace& space) {
+      try {
+        select_as_asked(way, command, space, model);
+      } catch (const Unanswered& e) {
+        unanswered.insert(unanswered.end(), e.questions.begin(), e.questions.end());
+      }
+    });
+    next = fmt::format("lgabench select --suite {} --score --answers cassette:{}", suite, a.cassette.string());
+  }
+  for (const std::string& question : unanswered) to_stderr("no answer: {}\n", one_line(question));
+  if (!unanswered.empty())
+    throw MethodError(fmt::format("{} questions have no answer; the replies to all others are in {}", unanswered.size(),
+                                  a.cassette.string()));
+  to_stdout("{}: replies of {}\nTheir score: {}\n", a.cassette.string(), options.model, next);
+}
+
+}  // namespace
+
+void add_answers(CLI::App& app, int& exit) {
+  auto a = std::make_shared<AnswersArguments>();
+  Verb verb(app, "answers", "Write a suite's questions for another program to ask, or keep the replies that it got");
+  auto* suite = verb.option("suite SUITE", a->suite, "The suite whose commands the questions are about");
+  auto* questions = verb.option("--questions FILE", a->questions,
+                                "Write a line of JSON for each question, with the messages for the model")
+                        ->needs(suite);
+  verb.option("--form flat|structured", a->form,
+              "flat: yes or no of each object type and texture; structured: what each command means",
+              one_of("form", forms), with_default)
+      ->needs(questions);
+  add_scenario_path(verb);
+  verb.below("Replies");
+  auto* from = verb.option("--from FILE", a->from,
+                           "The lines of --questions, each with the `reply` that came; with the Python package also a "
+                           "log of Inspect or lm-evaluation-harness")
+                   ->excludes(questions)
+                   ->excludes(suite);
+  verb.option("--cassette FILE", a->cassette, "The file to append the replies to, for --answers cassette:FILE")
+      ->needs(from);
+  verb.option("--model MODEL", a->model, "The model that replied")->needs(from);
+  verb.option("--request JSON", a->request,
+              "How its requests differed from lgabench's own, as for lgabench select --answers openai")
+      ->needs(from);
+  verb->footer(
+      "A reply without an answer is named and left out; one without a meaning that can be read selects nothing.\n"
+      "docs/language-models.md says how harnesses ask.\nExample: lgabench answers words --form structured --questions "
+      "words.jsonl\n         lgabench answers --from replied.jsonl --model M --cassette M.jsonl");
+  verb->callback([a, &exit] {
+    if (a->questions.empty() == a->from.empty())
+      throw InputError("answers: expected SUITE and --questions FILE, or --from FILE");
+    if (!a->from.empty() && (a->model.empty() || a->cassette.empty()))
+      throw InputError("answers --from: expected --model MODEL and --cassette FILE too");
+    a->questions.empty() ? keep_replies(*a) : write_questions(*a);
+    exit = ok;
+  });
+}
+
+}  // namespace lgabench::cli
