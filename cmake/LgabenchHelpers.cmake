@@ -85,6 +85,13 @@ function(lgabench_link_data)
     cmake_path(GET directory PARENT_PATH name)
     list(APPEND tables ${name}:envs/${directory})
   endforeach()
+  # What reads names from an environment's pictures, as share/lgabench/readers/ID.
+  file(GLOB directories CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/envs ${PROJECT_SOURCE_DIR}/envs/*/readers)
+  file(MAKE_DIRECTORY ${share}/readers)
+  foreach(directory ${directories})
+    cmake_path(GET directory PARENT_PATH name)
+    list(APPEND tables readers/${name}:envs/${directory})
+  endforeach()
   foreach(pair ${tables} answers:framework/lgabench/abstraction/answers disputed:framework/lgabench/abstraction/disputed
                prompts:framework/lgabench/abstraction/prompts
                embeddings:framework/lgabench/learning/embeddings paper:results/paper measured:results/measured formats:docs/formats

@@ -1,0 +1,47 @@
+// Reads what a picture shows: segments by difference from the empty place, their object types and textures by forests
+// of trees that were grown on drawn pictures.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include <lgabench/core/feature_space.hpp>
+#include <lgabench/core/observation.hpp>
+#include <lgabench/core/random.hpp>
+#include <lgabench/seeing/forest.hpp>
+
+namespace lgabench::seeing {
+
+/// What was learned from pictures of one environment.
+struct Model {
+  Forest object_types, textures;
+
+  std::string bytes() const;
+  /// @throws InputError for other bytes than bytes() gives.
+  static Model of(std::string_view bytes);
+};
+
+/// The picture with each colour divided by what the light made of the empty place's: medians over all that is no
+/// segment. Ids and names stay.
+Observation balanced(Observation seen, const Observation& empty);
+
+/// Fills `ids`: what differs from the empty place and is not its shadow, each connected piece one segment. `random`
+/// permutes the ids. `balances`: as balanced(), first. Names and shadows are left empty.
+Observation segments_by_difference(Observation seen, const Observation& empty, bool balances, RandomStream random);
+
+/// A model for one feature space. A value that never changes.
+class Reader {
+ public:
+  /// @throws InputError where the model learned no type or no texture of the space.
+  Reader(Model model, const FeatureSpace& space);
+
+  /// The segments of `ids` in the order of their ids, each with the type and the texture of the space that most trees
+  /// say; of two with as many, the first.
+  std::vector<Instance> names(const Observation& seen) const;
+
+ private:
+  Model model_;
+  std::vector<bool> types_, textures_;  // whether the space has each of the model's
+};
+
+}  // namespace lgabench::seeing
