@@ -97,6 +97,27 @@ def unseen_seed():
         ["suite", "labels", "language", "truth", "labels to truth, limit 0.80"], lines)
 
 
+PERSONS = {"person_rule+learns=words": "the words", "person_rule+learns=common_looks": "what taken objects share, one Selection",
+           "person_rule+choice=scene+learns=common_looks": "the same, scene by scene", "person_rule": "exact Bayes, one Selection",
+           "person_rule+choice=scene": "the same, scene by scene (the ceiling)", "person_rule+asks=random": "Bayes, random questions",
+           "plga": "plga, the grammar alone", "plga_active": "plga_active, likewise"}
+
+
+def persons():
+    """Success by demonstrations, and what each row loses to exact Bayes with as many questions."""
+    found = {}
+    for one in RUNS["persons"]["regret"]:
+        row = re.sub(r"\+(questions|unlisted)=[^+]*", "", one["method"])
+        found.setdefault((one["questions"], row), {})[one["demonstrations"]] = one
+    ns = sorted({n for by_n in found.values() for n in by_n})
+    lines = []
+    for (questions, row), by_n in sorted(found.items(), key=lambda one: (one[0][0], list(PERSONS).index(one[0][1]))):
+        last = by_n[ns[-1]]
+        lines.append([PERSONS[row], str(questions), *(f"{number(by_n[n]['success'])} [{interval(by_n[n]['success_interval'])}]" for n in ns),
+                      "" if row == "person_rule" else f"{last['regret']:+.2f} [{interval(last['regret_interval'])}]"])
+    return commands("persons") + table(["row", "questions", *(f"{n} demonstrations" for n in ns), f"regret at {ns[-1]}"], lines)
+
+
 RULES = {"random_object": "random object in view", "largest": "largest in the picture", "first_listed": "first that the simulator lists",
           "names": "names in the command", "word_vectors": "nearest by sentence embeddings", "constant_place": "nearest to the usual place",
           "nearest_colour": "nearest mean colour", "nearest_outline": "nearest outline", "nearest_size": "nearest size",
@@ -141,7 +162,7 @@ def leaks(suite):
 
 def rewritten(page):
     """The page's text with each marked table made anew."""
-    tables = {"instruction": instruction, "fidelity": fidelity, "unseen_seed": unseen_seed, "rivals": lambda: rivals(page.stem),
+    tables = {"instruction": instruction, "fidelity": fidelity, "unseen_seed": unseen_seed, "persons": persons, "rivals": lambda: rivals(page.stem),
               "leaks": lambda: leaks(page.stem)}
     return re.sub(r"(<!-- measured:(\w+) -->\n).*?(<!-- /measured -->)", lambda found: f"{found[1]}\n{tables[found[2]]()}\n{found[3]}",
                   page.read_text(), flags=re.S)

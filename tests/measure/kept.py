@@ -3,7 +3,7 @@
 
 Usage: tests/measure/kept.py RUN NAME
 RUN is a finished run directory without failed cells; the file is results/measured/runs/NAME.json, with the command that
-makes the run again, the program's version, the mean over scenarios of each row and arm, and each row's use of language.
+makes the run again, the program's version, the mean over scenarios of each row and arm, each row's use of language, and its regret.
 """
 import json
 import pathlib
@@ -27,13 +27,14 @@ def kept(run):
                          for level in curve["levels"]}}
              for curve in summary.get("perturbations", []) if curve["axis"] == "instruction"]
     return {"command": command, "program": about["program"], "date": about["started"][:10], "cells": len(about["cells"]),
-            "rows": rows, **({"instruction": heard} if heard else {})}
+            "rows": rows, **({"instruction": heard} if heard else {}),
+            **({"regret": summary["regret"]} if "regret" in summary else {})}
 
 
 def main():
     run, name = pathlib.Path(sys.argv[1]), sys.argv[2]
     value = kept(run)
-    lists = {key: value.pop(key) for key in ("rows", "instruction") if key in value}
+    lists = {key: value.pop(key) for key in ("rows", "instruction", "regret") if key in value}
     body = [f" {json.dumps(key)}: {json.dumps(member)}" for key, member in value.items()]
     body += [f" {json.dumps(key)}: [\n" + ",\n".join(f"  {json.dumps(one)}" for one in members) + "\n ]" for key, members in lists.items()]
     (ROOT / f"results/measured/runs/{name}.json").write_text("{\n" + ",\n".join(body) + "\n}\n")

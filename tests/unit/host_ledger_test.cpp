@@ -157,7 +157,7 @@ TEST_F(AnswerLedgerTest, a_malformed_question_breaks_the_protocol) {
   EXPECT_SAYS(message_of<Malformed>([this] {
                 say({{"type", "person"}, {"how", "guess"}});
               }),
-              "specify, edit, accept or truth");
+              "specify, edit, accept, truth, scene, takes or which");
   EXPECT_FALSE(asked_.answer({{{"type", "act"}}}, *worker_));
 }
 
