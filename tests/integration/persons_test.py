@@ -173,6 +173,28 @@ class Persons(Case):
             error = self.call(*run, f"asking.py:Asking+{option}", "--out", option, expect=3).stderr
             self.assertIn(said, error)
 
+    def test_the_report_says_what_a_row_loses_to_exact_bayes(self):
+        """And the true rule, which policy=point acts by, never fails."""
+        self.call("run", "persons", "--preset", "smoke", "--methods", "person_rule+learns=words,person_rule,human", *RUN, "--out", "out")
+        self.assert_matches_schemas("out")
+        success = {}
+        for key, (cell, _) in self.cells("out").items():
+            episodes = [json.loads(line) for line in (self.dir / "out/cells" / key / "episodes.jsonl").read_text().splitlines()]
+            persons = collections.defaultdict(list)
+            for one in episodes:
+                persons[one["command"]].append("failure" not in one or one["failure"] in ("", "none", None))
+            self.assertEqual(len(persons), 25)
+            success[cell["method"]["name"], cell["demonstrations"]] = sum(sum(of) / len(of) for of in persons.values()) / len(persons)
+        said = {(one["method"], one["demonstrations"]): one for one in json.loads((self.dir / "out/summary.json").read_text())["regret"]}
+        self.assertEqual(set(said), set(success))
+        for (row, n), one in said.items():
+            self.assertAlmostEqual(one["success"], success[row, n], msg=row)
+            self.assertAlmostEqual(one["regret"], success["person_rule", n] - success[row, n], msg=row)
+            self.assertEqual((one["persons"], one["questions"]), (25, 0))
+        self.assertEqual((success["human", 0], success["human", 3]), (1, 1))
+        self.assertGreater(success["person_rule", 3], success["person_rule", 0])
+        self.assertIn("What rows lose to exact Bayes", (self.dir / "out/report.md").read_text())
+
     def test_hostile_persons_are_refused(self):
         good = json.loads((SHARE / "scenarios" / "persons_1_01.json").read_text())
         place = {"object_types": ["apple", "banana"], "textures": ["red"]}
