@@ -17,7 +17,9 @@ PAPER = {"network": "text", "loss": "norm", "batches": "drawn"}  # what these op
 GENERAL = "paper_text", "smoke"  # docs/suites.md says what they are in any suite
 # Arms whose scenes look as another picture: what differs does not show.
 LOOKS_LIKE = {("robustness", "hard"): "q2_heart-hard", ("mobile", "perceived"): "bring_fruit-moved",
-              ("mobile", "perceived_hard"): "bring_fruit-moved", ("fetch", "perceived"): "fetch_ripe_fruit-near"}
+              ("mobile", "perceived_hard"): "bring_fruit-moved", ("fetch", "perceived"): "fetch_ripe_fruit-near",
+              **{("pictures", arm): f"something_to_drink_water_out_of-{arm}" for arm in ("others_1", "near_4", "near_6")},
+              ("pictures", "alike"): "something_to_drink_water_out_of-near_4"}
 
 
 def listed(values):

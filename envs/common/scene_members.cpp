@@ -30,7 +30,9 @@ NearMiss read_near_miss(const JsonReader& reader, const Scenario& scenario) {
   NearMiss sets;
   if (reader.json() == Json(true)) return sets;
   if (!reader.json().is_object()) reader.fail("true, or an object");
-  reader.only({"object_types", "textures"});
+  reader.only({"object_types", "textures", "alike"});
+  if (reader.has("alike") && !(sets.alike = reader.at("alike").boolean())) reader.at("alike").fail("true");
+  if (sets.alike && reader.has("textures")) reader.at("textures").fail("no such member beside \"alike\"");
   if (reader.has("object_types"))
     sets.object_types =
         read_missing(reader.at("object_types"), scenario.space.object_types, scenario, &FeatureSet::object_types);

@@ -11,9 +11,11 @@ namespace lgabench::common {
 /// Of which features near misses are made first, before others that the command does not mean.
 struct NearMiss {
   std::vector<std::string> object_types, textures;  // empty: any
+  bool alike = false;                               // textures with the target's colours in another pattern
 };
 
-/// `true`, or lists of names of the space that none of the scenario's commands means. @throws InputError
+/// `true`, or lists of names of the space that none of the scenario's commands means, or {"alike": true}. @throws
+/// InputError
 NearMiss read_near_miss(const JsonReader& reader, const Scenario& scenario);
 
 /// [fewest, most], within 0 and `most`. @throws InputError

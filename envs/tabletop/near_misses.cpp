@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include <lgabench/core/environments.hpp>
 
@@ -12,6 +14,19 @@ using Names = std::vector<std::string>;
 
 bool has(const Names& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// "red swirl" for "red paisley": textures of the same colours in another pattern, which are easily taken for each
+// other.
+Names alike(const std::string& texture, const Names& shown) {
+  constexpr std::array pairs{std::pair{" stripe", " polka dot"}, std::pair{" swirl", " paisley"}};
+  Names all;
+  for (const auto& [one, other] : pairs)
+    for (const auto& [from, to] : {std::pair(std::string(one), other), std::pair(std::string(other), one)})
+      if (texture.size() > from.size() && texture.compare(texture.size() - from.size(), from.size(), from) == 0)
+        if (const std::string like = texture.substr(0, texture.size() - from.size()) + to; has(shown, like))
+          all.push_back(like);
+  return all;
 }
 
 // Names that a command leaves out: those that the scenario calls near, and the others.
@@ -61,7 +76,7 @@ std::vector<Features> near_misses(const NearMissRequest& r, int count, RandomStr
   constexpr int tries = 200;
   if (count == 0) return {};
   const LeftOut types(r.types, r.meant.object_types, r.sets.object_types),
-      textures(r.textures, r.meant.textures, r.sets.textures);
+      textures(r.textures, r.meant.textures, r.sets.alike ? alike(r.target.texture, r.textures) : r.sets.textures);
   for (int i = 0; i < tries; ++i) {
     std::vector<Features> all = attempt(r.target, types, textures, static_cast<std::size_t>(count), random);
     if (!all.empty() && std::all_of(all.begin(), all.end(), r.may_be)) return all;

@@ -13,7 +13,8 @@ A method is a class in a file; `lgabench run q1 --methods my_method.py:MyMethod`
         def learn(self, demonstrations, services): ...
             # an object with act(observation, instruction), and maybe reset() and shown(), a Shown
 
-A perturbation axis is a class too, with `levels` and perceive(seen, level, stream) (docs/extending.md).
+A perturbation axis is a class too, with `levels` and perceive(seen, level, stream), and so is what reads names from pictures, with
+read(seen, space) (docs/extending.md).
 
 Needs NumPy alone. One thread; the same seed must give the same bytes.
 """
@@ -310,6 +311,19 @@ class Perturbation(Protocol):
 
         `stream` is the scene's and the same at every level: it gives the direction of a change, and the level gives its size. The
         same arguments give the same bytes. The arrays are yours to change; pixels of instances are counted by lgabench.
+        """
+
+
+class Perceiver(Protocol):
+    """What is called of a class that reads names from pictures (--names)."""
+    version: str
+    summary: str
+
+    def read(self, seen: Observation, space: FeatureSpace) -> Observation:
+        """`seen`, which has no instances, with those whose types and textures it reads: names of the space, ids that `ids` has.
+
+        `ids` are the segments that the run gives, and may be changed; colours are not looked at again. The same picture has the same
+        names, whatever was asked before.
         """
 
 

@@ -137,7 +137,7 @@ def describe(written):
     if not isinstance(declares, bool):
         raise NoMethod(f"{file}: questionnaire: expected True or False")
     functions = {node.name for node in classes[class_name].body if isinstance(node, ast.FunctionDef)}
-    kind = "perturbation" if "perceive" in functions else "method"
+    kind = "perturbation" if "perceive" in functions else "perceiver" if "read" in functions else "method"
     return {"file": str(real), "class": class_name, "kind": kind, "axis": _axis(found, file) if kind == "perturbation" else None,
             "id": _text(found, "id", file.stem, file), "version": _text(found, "version", "0", file),
             "summary": _text(found, "summary", (ast.get_docstring(classes[class_name]) or "").split("\n")[0], file),

@@ -12,7 +12,7 @@ import sysconfig
 import time
 import traceback
 
-from lgabench_method import Needs, RandomStream, Refused, Services, Shown, values
+from lgabench_method import FeatureSpace, Needs, RandomStream, Refused, Services, Shown, values
 from lgabench_method.frames import MOST, Malformed
 
 PROTOCOL = 1
@@ -256,7 +256,7 @@ class Host:
 
 
 class PerturbationHost:
-    """Likewise, of a perturbation."""
+    """Likewise, of a perturbation or a perceiver."""
     FRAMES = ("hello", "perceive", "drop", "bye")
 
     def __init__(self, channel, hello, descriptor):
@@ -264,7 +264,7 @@ class PerturbationHost:
         if hello["protocol"] != PROTOCOL:
             raise ImportError(f"protocol {hello['protocol']} (this package: {PROTOCOL})")
         self.observation = values.ObservationMemory(descriptor, hello["observation"])
-        named = hello["perturbation"]
+        named = hello.get("perturbation") or hello["perceiver"]
         self.kind = load(named["file"], named["class"], named["sha256"], named["versions"])
         self.perturbation = self.kind()
 
@@ -275,7 +275,11 @@ class PerturbationHost:
         if self.perturbation is None:
             self.perturbation = self.kind()
         seen = self.observation.read(header["instances"])
-        perceived = self.perturbation.perceive(seen, header["level"], RandomStream(header["stream"]))
+        if "space" in header:
+            space = FeatureSpace(**header["space"])
+            perceived = self.perturbation.read(seen, space)
+        else:
+            perceived = self.perturbation.perceive(seen, header["level"], RandomStream(header["stream"]))
         for frame in values.perceived_frames(perceived, self.observation.shape):
             self.channel.send(*frame)
 
@@ -320,7 +324,7 @@ def serve(channel):
     frame = channel.receive()
     if frame is None:
         return
-    of_kind = PerturbationHost if "perturbation" in frame[0] else Host
+    of_kind = PerturbationHost if {"perturbation", "perceiver"} & set(frame[0]) else Host
     host = _told(channel, "plugin", of_kind, channel, frame[0], frame[2])
     if host is None:
         return

@@ -33,7 +33,7 @@ class IncludeGraph(unittest.TestCase):
 
     def test_folders_were_found(self):
         for folder in ("core", "plugin", "abstraction", "learning", "host", "record", "job", "cell", "harness", "report", "http", "study", "drawn",
-                       "leaderboard", "cli"):
+                       "leaderboard", "cli", "seeing"):
             self.assertTrue(list(includes(f"framework/lgabench/{folder}")), folder)
 
     def test_core_knows_nothing_above_it(self):
@@ -57,6 +57,11 @@ class IncludeGraph(unittest.TestCase):
         torch_learner = "framework/lgabench/learning/torch_learner.hpp"  # for authors of networks, who link LibTorch themselves
         self.assertEqual(headers, [(torch_learner, "torch/torch.h")], "torch.h takes 13 s a file: sources only")
         self.forbid("framework", r"lgabench/learning/torch_learner")
+
+    def test_a_reader_of_names_knows_core_and_abstraction(self):
+        self.forbid("framework/lgabench/seeing", r"lgabench/(?!core/|abstraction/|seeing/)|torch|mujoco")
+        for folder in ("job", "cell", "harness", "report", "cli", "host"):
+            self.forbid(f"framework/lgabench/{folder}", r"lgabench/seeing/|opencv")
 
     def test_engines_stay_in_their_plugins(self):
         for folder in ("framework", "envs/common", *(f"envs/{id}" for id in ENVIRONMENTS), "plugins", "baselines"):
@@ -128,6 +133,9 @@ class Needed(unittest.TestCase):
 
     def test_command_line_loads_no_engine_and_no_pictures(self):
         self.forbid("bin/lgabench", rf"{'|'.join(ENVIRONMENTS)}|embree|opencv|hdf5")
+
+    def test_names_are_read_without_what_grew_their_reader(self):
+        self.forbid("lib/liblgabench_seeing.so", r"opencv_ml")
 
     def test_core_is_light(self):
         self.forbid("lib/liblgabench_core.so", r"torch|c10|opencv|embree|hdf5")

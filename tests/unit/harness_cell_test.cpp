@@ -493,6 +493,28 @@ TEST_F(Play, AFailureIsPerceptionsWhereThePolicySucceedsOnceItSees) {
   EXPECT_FALSE(perception_of(*scenario, scenario->tests.front())) << "no errors: the environment's observation itself";
 }
 
+// In the same picture, where only the names are read wrongly.
+TEST_F(Play, AFailureIsTheReadingsWhereThePolicySucceedsWithTheSimulatorsNames) {
+  Seeing policy([] { return environment->expert_action(); });
+  const std::vector<Instruction> instructions{{"u", {}}};
+  auto scenes = tests(*scenario, 3);
+  const auto blind = [](Observation seen) {
+    seen.instances.clear();
+    std::fill(seen.ids.begin(), seen.ids.end(), std::uint8_t{0});
+    return seen;
+  };
+  scenes[2].perception = [&](const Observation& seen, const Scene&) { return blind(seen); };
+  const Actor unread = policy_actor(policy, instructions, "p"),
+              read = reading_actor(
+                  [&](const Observation&seen, const Scene&scene) { return scene.index == 0 ? seen : blind(seen); },
+                  unread);
+  auto episodes = evaluate(*environment, scenes, read, [](int) {});
+  attribute_failures(*environment, scenes, read, unread, episodes, unread);
+  std::vector<std::string> all;
+  for (const Episode& e : episodes) all.push_back(e.attribution);
+  EXPECT_EQ(all, (std::vector<std::string>{"", "reading", "abstraction"})) << "the third: in neither picture";
+}
+
 // Takes note of what it is given.
 class Witness : public Policy {
  public:

@@ -435,6 +435,45 @@ TEST(TrainOn, IsASettingOfMethodsAlone) {
   EXPECT_SAYS(refusal({{"sensor_noise", "every"}}), "/train_on/sensor_noise: expected a level, or \"any\"");
 }
 
+TEST(Names, AreASettingOfMethodsAloneAndNameTheRow) {
+  Design design = small_grid();
+  const std::vector<Cell> without = expand(load_suite("q1"), design, {}, catalogue());
+  EXPECT_FALSE(to_json(design).contains("names"));
+  const auto with = [&](const Json& json) { return apply(JsonReader(json, "mine"), design); };
+  const auto cells_of = [&](const Json& json) { return expand(load_suite("q1"), with(json), {}, catalogue()); };
+  const auto keys = [](const std::vector<Cell>& cells) {
+    std::vector<std::string> all;
+    for (const Cell& cell : cells) all.push_back(key(cell));
+    return all;
+  };
+  EXPECT_EQ(keys(cells_of({{"names", {"simulator"}}, {"segments", {"simulator"}}})), keys(without));
+  const std::vector<Cell> cells =
+      cells_of({{"names", {"simulator", "read"}}, {"segments", {"difference", "simulator"}}});
+  std::map<std::string, std::set<std::string>> rows;
+  std::size_t methods = 0, references = 0;
+  for (const Cell& cell : without) ++(cell.method.is_reference() ? references : methods);
+  for (const Cell& cell : cells) {
+    rows[cell.method.id].insert(cell.method.name);
+    EXPECT_EQ(read_cell(to_json(cell), "test").reading, cell.reading);
+    EXPECT_EQ(key(read_cell(to_json(cell), "test")), key(cell));
+    EXPECT_EQ(to_json(cell).contains("names"), cell.reading.names == "read");
+    EXPECT_EQ(cell.data.contains("reader"), cell.reading.names == "read");
+  }
+  EXPECT_EQ(cells.size(), 4 * methods + references);
+  EXPECT_EQ(rows["lga"], (std::set<std::string>{"lga", "lga+names=read", "lga+segments=difference",
+                                                "lga+names=read+segments=difference"}));
+  EXPECT_EQ(rows["oracle"], std::set<std::string>{"oracle"});
+
+  const auto refusal = [&](const char* suite, const Json& json) {
+    return message_of<InputError>(
+        [&] { expand(load_suite(suite), apply(JsonReader(json, "mine"), load_suite(suite).design), {}, catalogue()); });
+  };
+  EXPECT_SAYS(refusal("q1", {{"names", {"raed"}}}), "no names or perceiver \"raed\" (did you mean \"read\"?)");
+  EXPECT_SAYS(refusal("q1", {{"segments", {"colour"}}}), "/segments/0: expected \"simulator\" or \"difference\"");
+  EXPECT_SAYS(refusal("robustness", {{"names", {"read"}}}), "makes errors in the names, which reading would overwrite");
+  EXPECT_SAYS(refusal("mobile", {{"names", {"read"}}}), "nothing learned to read pictures of mobile");
+}
+
 TEST(Variants, RefuseOneRowTwiceAndWhatIsNoVariant) {
   const auto refusal = [](const std::vector<std::string>& methods) {
     return message_of<InputError>([&] { rows(methods); });

@@ -1,9 +1,14 @@
 // The reader of names: what it reads from pictures, what light and noise do to it, and that its files are checked.
 #include <algorithm>
 #include <map>
+#include <memory>
+#include <set>
 
 #include <gtest/gtest.h>
 
+#include <lgabench/abstraction/reading.hpp>
+#include <lgabench/abstraction/scenes.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/feature_space.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/perturbations.hpp>
@@ -158,6 +163,52 @@ TEST(Segments, AreWhatDiffersFromTheEmptyTableAndNotItsShadow) {
       }
       EXPECT_GE(good, seen - 1);
     }
+}
+
+// What a cell is given in place of the simulator's observation.
+TEST(Reading, ReadsIdsAndNamesAndNothingElse) {
+  const Scenario scenario = load_scenario("heart");
+  const EnvironmentType& environment = find_environment("tabletop");
+  EXPECT_FALSE(reading_of(scenario, {}));
+  for (const Reading& reading : {Reading{"read", "simulator"}, Reading{"read_robust", "simulator"},
+                                 Reading{"simulator", "difference"}, Reading{"read", "difference"}}) {
+    const ReadPicture read = reading_of(scenario, reading);
+    for (int i = 0; i < 5; ++i) {
+      const Scene scene = test_scene(scenario, "continuous", "test", 3, i);
+      const Observation seen = environment.draw(scene), given = read(seen, scene), again = read(seen, scene);
+      EXPECT_EQ(given.rgb, seen.rgb);
+      EXPECT_EQ(given.ids == seen.ids, reading.segments == Reading::simulator);
+      EXPECT_EQ(given.ids, again.ids);
+      ASSERT_EQ(given.instances.size(), seen.instances.size());
+      std::multiset<std::string> said, true_names;
+      for (std::size_t k = 0; k < given.instances.size(); ++k) {
+        said.insert(given.instances[k].object_type);
+        true_names.insert(seen.instances[k].object_type);
+        EXPECT_EQ(given.instances[k].pixels, std::count(given.ids.begin(), given.ids.end(), given.instances[k].id));
+      }
+      EXPECT_EQ(said, true_names) << reading.suffix() << ' ' << i;
+    }
+  }
+}
+
+// A perceiver is shown no names, and what it does to colours is not looked at.
+TEST(Reading, HidesTheTableFromAPerceiver) {
+  struct Nosy : Perceiver {
+    Observation read(Observation seen, const FeatureSpace& space) override {
+      EXPECT_TRUE(seen.instances.empty());
+      EXPECT_TRUE(seen.shadows.empty());
+      seen.rgb.assign(seen.rgb.size(), 0);
+      seen.instances.push_back({1, space.object_types.front(), space.textures.front(), -7});
+      return seen;
+    }
+  };
+  const Scenario scenario = load_scenario("heart");
+  const Scene scene = test_scene(scenario, "continuous", "test", 3, 0);
+  const Observation seen = find_environment("tabletop").draw(scene);
+  const Observation given = reading_of(scenario, {"nosy", "simulator"}, std::make_shared<Nosy>())(seen, scene);
+  EXPECT_EQ(given.rgb, seen.rgb);
+  ASSERT_EQ(given.instances.size(), 1u);
+  EXPECT_EQ(given.instances.front().pixels, std::count(seen.ids.begin(), seen.ids.end(), 1));
 }
 
 TEST(Forest, SavesWhatItGrewAndRefusesOtherBytes) {

@@ -29,6 +29,8 @@ CheckReport check_engine(const PluginInfo& engine, const std::string& environmen
 /// likewise.
 /// @throws PluginError, MethodGone likewise.
 CheckReport check_perturbation(HostJob job, const CheckPhase& phase);
+/// Lets the perceiver read scenes, forwards and backwards, likewise.
+CheckReport check_perceiver(HostJob job, const CheckPhase& phase);
 
 /// What of `now`, threads or processes, is still there: they are given half a second to end.
 std::vector<std::string> left_behind(const std::function<std::vector<std::string>()>& now);

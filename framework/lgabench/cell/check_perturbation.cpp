@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cstdlib>
+#include <utility>
 
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/check.hpp>
@@ -54,6 +55,29 @@ double mean_change(const Observation& a, const Observation& b) {
   return sum / static_cast<double>(a.rgb.size());
 }
 
+std::vector<SeenScene> scenes_of(const EnvironmentType& environment, const Scenario& scenario) {
+  const std::string layout = environment.tasks().front().layouts.front();
+  std::vector<SeenScene> scenes;
+  for (int i = 0; i < scenes_a_level; ++i) {
+    Scene scene = test_scene(scenario, layout, scenario.tests.front().id, check_seed, i);
+    Observation seen = environment.draw(scene);
+    scenes.push_back({std::move(scene), std::move(seen)});
+  }
+  return scenes;
+}
+
+// What the plugin's process holds and was refused, and how long a picture took.
+void judge_process(HostedPerturbation& process, bool is_library, CheckReport& report) {
+  if (is_library) {
+    process.drop();
+    judge_leftovers(report, [&process] { return process.state(); });
+  }
+  const std::vector<std::string> refused = process.refused_calls();
+  if (!refused.empty())
+    report.note("system calls", fmt::format("refused: {}", fmt::join(refused, ", ")),
+                "a plugin's process has those of the list in docs/trust.md alone; bear it, or do without");
+}
+
 // One axis in one environment.
 class AxisCheck {
  public:
@@ -64,14 +88,8 @@ class AxisCheck {
         report_(report),
         in_(", " + job.environment),
         is_library_(job.plugin.python.is_null()),
-        process_(job) {
-    const std::string layout = environment_.tasks().front().layouts.front();
-    for (int i = 0; i < scenes_a_level; ++i) {
-      Scene scene = test_scene(scenario_, layout, scenario_.tests.front().id, check_seed, i);
-      Observation seen = environment_.draw(scene);
-      scenes_.push_back({std::move(scene), std::move(seen)});
-    }
-  }
+        process_(job),
+        scenes_(scenes_of(environment_, scenario_)) {}
 
   /// Returns a hash of all that was perceived.
   std::string run(const CheckPhase& phase) {
@@ -86,14 +104,7 @@ class AxisCheck {
       }
     }
     judge_sizes();
-    if (is_library_) {
-      process_.drop();
-      judge_leftovers(report_, [this] { return process_.state(); });
-    }
-    const std::vector<std::string> refused = process_.refused_calls();
-    if (!refused.empty())
-      report_.note("system calls", fmt::format("refused: {}", fmt::join(refused, ", ")),
-                   "a plugin's process has those of the list in docs/trust.md alone; bear it, or do without");
+    judge_process(process_, is_library_, report_);
     report_.ok("time" + in_, fmt::format("{:.1f} ms a picture", 1e3 * seconds_ / calls_));
     return sha256(all);
   }
@@ -159,7 +170,7 @@ class AxisCheck {
   const std::string in_;
   const bool is_library_;
   HostedPerturbation process_;
-  std::vector<SeenScene> scenes_;
+  const std::vector<SeenScene> scenes_;
   std::vector<double> changes_;  // by level
   double seconds_ = 0;
   int calls_ = 0;
@@ -167,10 +178,13 @@ class AxisCheck {
 
 }  // namespace
 
-CheckReport check_perturbation(HostJob job, const CheckPhase& phase) {
+namespace {
+
+// `check` of each environment to check in: its job, its part of the report's hashes.
+template <class Check>
+CheckReport in_environments(HostJob job, const CheckPhase& phase, Check check) {
   CheckReport report;
   job.hidden = runs_below(job.plugin.file.parent_path());
-  const PerturbationAxis axis = read_axis(job.plugin.id, JsonReader(job.plugin.axis, job.plugin.file.string()));
   const std::vector<std::string> environments =
       job.environment.empty() ? environment_ids() : std::vector{job.environment};
   const fs::path scratch = job.scratch;
@@ -179,9 +193,65 @@ CheckReport check_perturbation(HostJob job, const CheckPhase& phase) {
     job.scratch = scratch / environment;
     fs::create_directory(job.scratch);
     phase("load", report);
-    report.hashes["perceived, " + environment] = AxisCheck(job, axis, report).run(phase);
+    report.hashes["perceived, " + environment] = check(job, report);
   }
   return report;
+}
+
+// A perceiver in one environment: returns a hash of all that was read.
+std::string read_scenes(const HostJob& job, const CheckPhase& phase, CheckReport& report) {
+  const EnvironmentType& environment = find_environment(job.environment);
+  const Scenario scenario = load_scenario(environment.tasks().front().example);
+  const std::string doing = "read, " + job.environment;
+  phase(doing, report);
+  HostedPerturbation process(job);
+  std::vector<std::string> bytes;
+  std::vector<SeenScene> scenes = scenes_of(environment, scenario);
+  int calls = 0, right = 0, objects = 0;
+  double seconds = 0;
+  const auto read = [&](const SeenScene& one) {
+    const auto start = std::chrono::steady_clock::now();
+    Observation seen = process.read(one.observation, scenario.space);
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    ++calls;
+    expect_perceived(seen, scenario.space);
+    return seen;
+  };
+  try {
+    for (const SeenScene& one : scenes) {
+      const Observation seen = read(one);
+      bytes.push_back(perceived_bytes(seen));
+      for (const Instance& truth : one.observation.instances)
+        for (const Instance& said : seen.instances)
+          if (said.id == truth.id) right += said.object_type == truth.object_type && said.texture == truth.texture;
+      objects += static_cast<int>(one.observation.instances.size());
+    }
+    bool same = true;
+    for (std::size_t i = scenes.size(); same && i-- > 0;) same = perceived_bytes(read(scenes[i])) == bytes[i];
+    report.judge(doing, same ? "" : "a picture seen again, in another order, has other names",
+                 "the same picture has the same names again",
+                 "draw nothing, and keep nothing from one call to the next");
+    report.ok("names, " + job.environment, fmt::format("{} of {} objects as the simulator names them", right, objects));
+  } catch (const MethodError& e) {
+    report.problem(doing, e.what(), "this call must succeed: a run makes it too");
+  }
+  judge_process(process, job.plugin.python.is_null(), report);
+  report.ok("time, " + job.environment, fmt::format("{:.1f} ms a picture", 1e3 * seconds / std::max(calls, 1)));
+  return sha256(fmt::format("{}", fmt::join(bytes, "\n")));
+}
+
+}  // namespace
+
+CheckReport check_perturbation(HostJob job, const CheckPhase& phase) {
+  const PerturbationAxis axis = read_axis(job.plugin.id, JsonReader(job.plugin.axis, job.plugin.file.string()));
+  return in_environments(std::move(job), phase, [&](const HostJob& one, CheckReport& report) {
+    return AxisCheck(one, axis, report).run(phase);
+  });
+}
+
+CheckReport check_perceiver(HostJob job, const CheckPhase& phase) {
+  return in_environments(std::move(job), phase,
+                         [&](const HostJob& one, CheckReport& report) { return read_scenes(one, phase, report); });
 }
 
 }  // namespace lgabench

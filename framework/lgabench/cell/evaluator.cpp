@@ -72,8 +72,16 @@ std::vector<Episode> evaluate(Environment& environment, const std::vector<TestSc
   return episodes;
 }
 
+Actor reading_actor(Perception reading, Actor actor) {
+  if (!reading) return actor;
+  return [reading = std::move(reading), actor = std::move(actor)](const Environment& environment, const Scene& scene,
+                                                                  const Observation& seen) {
+    return actor(environment, scene, reading(seen, scene));
+  };
+}
+
 void attribute_failures(Environment& environment, const std::vector<TestScene>& scenes, const Actor& actor,
-                        const Actor& with_truth, std::vector<Episode>& episodes) {
+                        const Actor& with_truth, std::vector<Episode>& episodes, const Actor& unread) {
   const auto succeeds = [&environment](const TestScene& test, const Actor& acts) {
     return play(environment, test, acts).success();
   };
@@ -85,6 +93,8 @@ void attribute_failures(Environment& environment, const std::vector<TestScene>& 
     as_it_is.view = View();
     if (episode.failure == failure::abstraction_empty)
       episode.attribution = "abstraction";
+    else if (unread && succeeds(scenes[i], unread))
+      episode.attribution = "reading";
     else if (errs && succeeds(as_it_is, actor))
       episode.attribution = "perception";
     else

@@ -36,12 +36,16 @@ Actor policy_actor(Policy& policy, std::function<Instruction(const Scene&)> told
 std::vector<Episode> evaluate(Environment& environment, const std::vector<TestScene>& scenes, const Actor& actor,
                               const std::function<void(int)>& done);
 
-/// Says of every failed episode what failed (docs/protocol.md, section 5): "perception" where `actor`, the same policy,
+/// `actor`, who is given what `reading` makes of an observation. Null: as it is.
+Actor reading_actor(Perception reading, Actor actor);
+
+/// Says of every failed episode what failed (docs/protocol.md, section 5): "reading" where `unread`, the same policy
+/// given the simulator's names and segments, succeeds in the same picture; "perception" where `actor`, the same policy,
 /// succeeds in the same scene seen as it is; "abstraction" where `with_truth`, the policy told the true Selection as
-/// well, does, and where nothing was selected; else "policy". Other arguments as of evaluate(), `episodes` what it
-/// returned.
+/// well, and unread, does, and where nothing was selected; else "policy". `unread` is null where nothing is read. Other
+/// arguments as of evaluate(), `episodes` what it returned.
 /// @throws EngineError if the engine fails.
 void attribute_failures(Environment& environment, const std::vector<TestScene>& scenes, const Actor& actor,
-                        const Actor& with_truth, std::vector<Episode>& episodes);
+                        const Actor& with_truth, std::vector<Episode>& episodes, const Actor& unread = {});
 
 }  // namespace lgabench

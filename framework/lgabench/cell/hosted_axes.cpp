@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <memory>
 #include <utility>
 
 #include <lgabench/cell/runs_below.hpp>
+#include <lgabench/core/hash.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/host/hosted_perturbation.hpp>
 
@@ -74,6 +77,51 @@ void host_axes(const Scenario& scenario, const CellJob& job) {
       });
     };
   }
+}
+
+namespace {
+
+// A plugin's, in a process of its own, whose answers are checked.
+class CheckedPerceiver final : public Perceiver {
+ public:
+  CheckedPerceiver(const CellJob& job, const fs::path& scratch)
+      : name_(job.perceiver->id + " (perceiver)"), process_(guarded(name_, [&] {
+          return std::make_unique<HostedPerturbation>(host_job(job, *job.perceiver, Json::object(), scratch));
+        })) {}
+
+  Observation read(Observation seen, const FeatureSpace& space) override {
+    return guarded(name_, [&] {
+      const std::string picture = hash_of(seen);
+      Observation read = process_->read(std::move(seen), space);
+      expect_perceived(read, space);
+      const std::string& before = answers_.emplace(picture, hash_of(read)).first->second;
+      if (before != hash_of(read)) throw MethodError("another answer than before to the same picture");
+      return read;
+    });
+  }
+
+ private:
+  static std::string hash_of(const Observation& seen) {
+    std::string bytes(seen.rgb.begin(), seen.rgb.end());
+    bytes.append(seen.ids.begin(), seen.ids.end());
+    for (const Instance& one : seen.instances) bytes += fmt::format("{} {} {}\n", one.id, one.object_type, one.texture);
+    return hex(hash64(bytes));
+  }
+
+  const std::string name_;
+  std::unique_ptr<HostedPerturbation> process_;
+  std::map<std::string, std::string> answers_;
+};
+
+}  // namespace
+
+ReadPicture reading_in(const Scenario& scenario, const CellJob& job) {
+  if (job.cell.reading.plugin().empty()) return reading_of(scenario, job.cell.reading);
+  if (!job.perceiver)
+    throw PluginError(fmt::format("perceiver {}: its plugin is not there", job.cell.reading.plugin()));
+  const fs::path scratch = job.scratch / "perceiver";
+  fs::create_directory(scratch);
+  return reading_of(scenario, job.cell.reading, std::make_shared<CheckedPerceiver>(job, scratch));
 }
 
 }  // namespace lgabench

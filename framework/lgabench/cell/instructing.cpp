@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <utility>
 
 #include <lgabench/abstraction/scenes.hpp>
@@ -47,10 +48,10 @@ Instruction instruction_in(const Scene& scene, const Scenario& scenario, const C
   return told;
 }
 
-Actor recording_actor(const Actor& actor, const Scenario& scenario, const Cell& cell,
+Actor recording_actor(const Actor& actor, const Perception& reading, const Scenario& scenario, const Cell& cell,
                       const std::vector<Instruction>& instructions, const Policy* policy,
                       std::vector<PerturbedEpisode>& episodes) {
-  return [&, actor, policy](const Environment& environment, const Scene& scene, const Observation& seen) {
+  return [&, actor, reading, policy](const Environment& environment, const Scene& scene, const Observation& seen) {
     const auto& perturbation = scenario.arm(scene.arm).perturbation;
     const Scene control =
         find_environment(scenario.environment)
@@ -66,11 +67,13 @@ Actor recording_actor(const Actor& actor, const Scenario& scenario, const Cell& 
                              target ? target->scale : 1};
     const Instruction told = instruction_in(scene, scenario, cell, instructions);
     const int command = command_given(scene, scenario, cell.scenes_of_seed());
-    episode.hashes =
-        parts_of({scene, environment.bodies(), control}, seen,
-                 policy ? &instructions.at(static_cast<std::size_t>(command)) : nullptr, policy ? &told : nullptr);
+    const std::optional<Observation> read = reading ? std::optional(reading(seen, scene)) : std::nullopt;
+    episode.hashes = parts_of({scene, environment.bodies(), control}, seen,
+                              policy ? &instructions.at(static_cast<std::size_t>(command)) : nullptr,
+                              policy ? &told : nullptr, read ? &*read : nullptr);
+    if (read) episode.names = names_hash(*read);
     episodes.push_back(episode);
-    const Move move = actor(environment, scene, seen);
+    const Move move = actor(environment, scene, read ? *read : seen);
     if (policy) episodes.back().read = read_by(*policy, cell.method.id);
     return move;
   };

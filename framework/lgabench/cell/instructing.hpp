@@ -15,8 +15,9 @@ Instruction instruction_in(const Scene& scene, const Scenario& scenario, const C
                            const std::vector<Instruction>& instructions);
 
 /// `actor`, which appends to `episodes` hashes of what it is given in each. `policy` is null for a reference row, which
-/// is given no instruction. All arguments are borrowed but `actor`.
-Actor recording_actor(const Actor& actor, const Scenario& scenario, const Cell& cell,
+/// is given no instruction. `reading`: what the actor is given in place of what is seen; null: that. All arguments are
+/// borrowed but these two.
+Actor recording_actor(const Actor& actor, const Perception& reading, const Scenario& scenario, const Cell& cell,
                       const std::vector<Instruction>& instructions, const Policy* policy,
                       std::vector<PerturbedEpisode>& episodes);
 

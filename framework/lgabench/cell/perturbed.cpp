@@ -41,8 +41,14 @@ AxesOf axes_in(const Scenario& scenario) {
   };
 }
 
+std::string names_hash(const Observation& observation) {
+  Json instances = Json::array();
+  for (const Instance& one : observation.instances) instances.push_back({one.id, one.object_type, one.texture});
+  return hash_of(hash_of(bytes_of(observation.ids)) + hash_of(instances));
+}
+
 std::array<std::string, parts> parts_of(const PlayedScene& played, const Observation& observation,
-                                        const Instruction* selected, const Instruction* told) {
+                                        const Instruction* selected, const Instruction* told, const Observation* read) {
   const Scene& scene = played.scene;
   Json objects = to_json(scene).at("objects"), control = to_json(played.control), physics = Json::array(),
        instances = Json::array(), pixels = Json::array();
@@ -55,10 +61,9 @@ std::array<std::string, parts> parts_of(const PlayedScene& played, const Observa
     if (const auto& of = played.bodies[i].physics)
       physics.back().push_back({of->mass_kg, of->friction, size_json(of->high_m - of->low_m)});
   }
-  for (const Instance& one : observation.instances) {
-    instances.push_back({one.id, one.object_type, one.texture});
-    pixels.push_back(one.pixels);
-  }
+  for (const Instance& one : observation.instances) instances.push_back({one.id, one.object_type, one.texture});
+  const Observation& given = read ? *read : observation;
+  for (const Instance& one : given.instances) pixels.push_back(one.pixels);
   std::array<std::string, parts> hashes;
   const auto of = [&hashes](EpisodePart part) -> std::string& { return hashes[static_cast<std::size_t>(part)]; };
   of(EpisodePart::objects) = hash_of(objects);
@@ -68,7 +73,8 @@ std::array<std::string, parts> parts_of(const PlayedScene& played, const Observa
   of(EpisodePart::instances) = hash_of(instances);
   of(EpisodePart::control) = hash_of(control);
   std::string input = of(EpisodePart::rgb) + of(EpisodePart::ids) + of(EpisodePart::instances) + canonical(pixels);
-  for (const std::uint16_t bits : observation.shadows)
+  if (read) input += names_hash(*read);
+  for (const std::uint16_t bits : given.shadows)
     input += static_cast<char>(bits), input += static_cast<char>(bits >> 8);
   if (selected && told) {
     of(EpisodePart::words) = hash_of(told->utterance);
@@ -119,6 +125,13 @@ void expect_declared(const std::vector<PerturbedEpisode>& all, const std::vector
       one.differing += differs;
       one.axes = axes;
     }
+    const auto same = [&](EpisodePart part) {
+      return e.hashes[static_cast<std::size_t>(part)] == found->second->hashes[static_cast<std::size_t>(part)];
+    };
+    if (e.names != found->second->names && same(EpisodePart::rgb) && same(EpisodePart::ids) &&
+        same(EpisodePart::instances))
+      throw MethodError(fmt::format("names read: others than in the control for the same picture, in episode {} of {}",
+                                    e.index, e.arm));
     constexpr auto input = static_cast<std::size_t>(EpisodePart::input);
     const auto one = acted.find({e.arm, e.index}), other = acted.find({found->second->arm, e.index});
     if (actions && e.hashes[input] == found->second->hashes[input] && one != acted.end() && other != acted.end() &&

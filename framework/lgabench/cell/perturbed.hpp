@@ -25,16 +25,21 @@ struct PlayedScene {
   const Scene& control;            // which it was made from
 };
 
-/// The parts of an episode that a policy sees as `observation`, told `told` where `selected` was selected. Without
-/// them, of a reference row.
+/// The parts of an episode that a policy sees as `observation`, or is given as what was `read` of it, told `told` where
+/// `selected` was selected. Without them, of a reference row.
 std::array<std::string, parts> parts_of(const PlayedScene& played, const Observation& observation,
-                                        const Instruction* selected, const Instruction* told);
+                                        const Instruction* selected, const Instruction* told,
+                                        const Observation* read = nullptr);
+
+/// Of ids, and of the id, type and texture of each instance.
+std::string names_hash(const Observation& observation);
 
 /// Expects of every axis that parts which it does not declare are the control's, to the bit, and that a part which it
 /// changes is another one in at least 95 % of its arm's episodes. `actions`: whether a policy acts, whose action must
 /// be the control's, to the bit, where its input is. `episodes` as evaluate() returned them, those of the control
-/// first. @throws EngineError that names axis, part and episode; MethodError where the policy is at fault, or a plugin
-/// whose axis it is.
+/// first. Where an axis leaves picture, ids and instances as they are, what is read of them must be the same too.
+/// @throws EngineError that names axis, part and episode; MethodError where the policy is at fault, or a plugin whose
+/// axis it is.
 void expect_declared(const std::vector<PerturbedEpisode>& parts, const std::vector<Episode>& episodes, bool actions,
                      const AxesOf& axes);
 

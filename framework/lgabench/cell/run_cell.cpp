@@ -99,8 +99,7 @@ CellMethod make_method(const CellJob& job) {
     method = std::make_unique<SelectedBy>(in_directory(*job.method, options, "selects"), [&job, in_directory] {
       return in_directory(*job.acts, job.cell.method.acts->options, "acts");
     });
-  else if (!job.axes
-                .empty())  // a plugin's axis has a directory of its own: what the one writes the other does not read
+  else if (!job.axes.empty() || job.perceiver)  // each has a directory of its own: none reads what another writes
     method = in_directory(*job.method, options, "method");
   else
     method = hosted(job, *job.method, options, job.scratch);
@@ -220,7 +219,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   const Cell& cell = job.cell;
   const std::string& id = cell.method.id;
   const Scenario scenario = read_scenario(*cell.scenario, "cell: /scenario");
-  if (data_hashes(scenario, cell.answers) != cell.data)
+  if (data_hashes(scenario, cell.answers, cell.reading) != cell.data)
     throw InputError("cell: /data: the data directory changed since the run began");
   Phases phases(report);
   const auto count = [&phases](int n) { phases.count(n); };
@@ -228,6 +227,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   phases.begin("load");
   host_axes(scenario, job);
   const auto [method, processes] = make_method(job);
+  const ReadPicture reading = method ? reading_in(scenario, job) : nullptr;
 
   // 1 select: which features does each command make matter?
   phases.begin("select");
@@ -248,11 +248,16 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   // 3 demonstrate: the oracle shows it.
   phases.begin("demonstrate");
   const auto environment = make_environment(scenario, load_engine(job.engine));
+  if (selected.needs.shadows && cell.reading.segments != Reading::simulator)
+    throw MethodError("it asks for shadows, which only the simulator's segments have");
   environment->show_shadows(selected.needs.shadows);
   auto demonstrations = instructed(cached_demonstrations(demonstration_cache(job, scenario), *environment, scenes,
                                                          selected.needs, scenario.utterances(), count),
                                    scenes, selected);
   if (cell.train_on) demonstrations = perceived(std::move(demonstrations), scenes, scenario, *cell.train_on);
+  if (reading)
+    for (std::size_t i = 0; i < demonstrations.size(); ++i)
+      for (Step& step : demonstrations[i].steps) step.observation = reading(step.observation, scenes.at(i));
 
   // 4 learn: from observations and labels to a policy.
   phases.begin("learn");
@@ -276,9 +281,10 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   std::optional<Showing> showing;
   if (policy) showing.emplace(*policy, id);
   std::vector<PerturbedEpisode> perturbed;
-  const Actor recorded = perturbs && actor
-                             ? recording_actor(actor, scenario, cell, selected.instructions, policy.get(), perturbed)
-                             : actor;
+  const Actor read = actor ? reading_actor(reading, actor) : Actor();
+  const Actor recorded = perturbs && actor ? recording_actor(actor, reading, scenario, cell, selected.instructions,
+                                                             policy.get(), perturbed)
+                                           : read;
   std::vector<Episode> episodes = evaluate(*environment, tests, recorded, [&](int n) {
     count(n);
     if (showing) showing->played(tests[static_cast<std::size_t>(n) - 1]);
@@ -290,7 +296,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   const std::vector<Instruction> truth = true_instructions(scenario);
   const Actor with_truth = policy ? policy_actor(*policy, truth, id) : Actor();
   if (job.attributed && selecting.is_attributable())
-    attribute_failures(*environment, tests, actor, with_truth, episodes);
+    attribute_failures(*environment, tests, read, with_truth, episodes, reading ? actor : Actor());
   if (processes) guarded(id, [processes = processes] { processes->end(); });
 
   // 6 record: no clock but in timing.json.

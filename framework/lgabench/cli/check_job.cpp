@@ -26,7 +26,8 @@ void check(const JsonReader& reader, const Messages& messages) {
   const auto on_perturbation = [&] {
     HostJob perturbation{*job.perturbation, job.environment, Json::object(), 0, job.scratch};
     perturbation.perturb = job.perturb;
-    return check_perturbation(perturbation, phase);
+    return job.perturbation->kind == "perceiver" ? check_perceiver(perturbation, phase)
+                                                 : check_perturbation(perturbation, phase);
   };
   const CheckReport report = job.perturbation ? on_perturbation()
                              : job.method     ? on_method()

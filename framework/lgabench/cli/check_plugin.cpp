@@ -9,6 +9,7 @@
 #include <memory>
 #include <string_view>
 
+#include <lgabench/abstraction/reading.hpp>
 #include <lgabench/cli/findings.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/colour.hpp>
@@ -98,6 +99,10 @@ std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
   if (plugin.kind == "perturbation" && std::find(own.begin(), own.end(), plugin.id) != own.end())
     report.problem("id", fmt::format("{} is an axis of lgabench's own", plugin.id),
                    "take another: it would be refused");
+  const std::vector<std::string>& readers = names_read();
+  if (plugin.kind == "perceiver" &&
+      (plugin.id == Reading::simulator || std::find(readers.begin(), readers.end(), plugin.id) != readers.end()))
+    report.problem("id", fmt::format("{} is a word of --names", plugin.id), "take another: it would never be asked");
 
   const Scratch scratch("check");
   const PoolOptions pool{1, a.timeout_s, 0};
@@ -109,7 +114,7 @@ std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
     CheckJob job;
     job.engine = engine;
     if (plugin.kind == "method") job.method = plugin;
-    if (plugin.kind == "perturbation") job.perturbation = plugin;
+    if (plugin.kind == "perturbation" || plugin.kind == "perceiver") job.perturbation = plugin;
     job.options = options;
     job.scratch = scratch.path / fmt::format("method{}", i);
     job.perturb = i == 0 ? 0 : 165;
@@ -183,7 +188,8 @@ void add_check_plugin(CLI::App& app, int& exit) {
   auto a = std::make_shared<CheckPluginArguments>();
   Verb verb(app, "check-plugin", "Check a plugin for mistakes, and say how to fix them");
   verb.option("file FILE", a->file,
-              "The plugin's library, FILE.so, or a method or perturbation in Python, FILE.py:CLASS", required);
+              "The plugin's library, FILE.so, or a method, perturbation or perceiver in Python, FILE.py:CLASS",
+              required);
   verb.option("--python PROGRAM", a->python, "The interpreter for a plugin in Python", with_default);
   verb.option("--set OPTION=VALUE", a->settings, "An option of the plugin; can be repeated", repeatable);
   verb.option("--environment ID", a->environment, "The environment to check it in",
@@ -193,7 +199,8 @@ void add_check_plugin(CLI::App& app, int& exit) {
   verb.option("--json", a->json, "Print one JSON object");
   verb->footer(
       "Two fresh processes use the plugin as cells do, with the same seed. Exit 1 if there is a problem.\nWithout "
-      "--environment, an engine or a perturbation is checked in every environment, and a method in the first that has "
+      "--environment, an engine, a perturbation or a perceiver is checked in every environment, and a method in the "
+      "first that has "
       "a scenario with a "
       "command that is tested but never demonstrated.\nExample: lgabench check-plugin build/my_method.so");
   verb->callback([a, &exit] { exit = check_plugin(*a); });

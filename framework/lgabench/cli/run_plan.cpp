@@ -85,6 +85,8 @@ std::string by_option(const std::string& complaint) {
                                        {"seeds", "--seeds"},
                                        {"selection_errors", "--selection-errors"},
                                        {"train_on", "--train-on"},
+                                       {"names", "--names"},
+                                       {"segments", "--segments"},
                                        {"episodes", "--episodes"},
                                        {"scene_seed", "--scene-seed"}})
     if (complaint.rfind(fmt::format("{}: /{}", command_line_place, member), 0) == 0)
@@ -123,6 +125,8 @@ Design design_of(const RunArguments& a, const Suite& suite) {
   if (!a.seeds.empty()) overrides["seeds"] = numbers("--seeds", a.seeds);
   for (const std::string& words : a.selection_errors) overrides["selection_errors"].push_back(selection_errors(words));
   if (!a.train_on.empty()) overrides["train_on"] = train_on(a.train_on);
+  give("names", a.names);
+  give("segments", a.segments);
   if (a.episodes) overrides["episodes"] = *a.episodes;
   Design design = preset_design(suite, a.preset);
   if (a.scene_seed) {
@@ -280,6 +284,13 @@ void add_run_options(Verb& verb, RunArguments& a) {
               "Show methods their demonstrations through a perturbation axis: AXIS:LEVEL, or AXIS:any for a level "
               "drawn for each demonstration; not for the leaderboard",
               rare);
+  verb.option("--names SOURCE,...", a.names,
+              "Where the names of what methods see come from: simulator; read from the picture as it is, read_balanced "
+              "once its light is taken out, read_drawn by what learned from drawn light, noise and distance, "
+              "read_robust with both; or a perceiver plugin's id",
+              rare);
+  verb.option("--segments SOURCE,...", a.segments,
+              "Where their segments come from: simulator; difference from the empty place", rare);
   verb.option("--episodes N", a.episodes, "Test scenes per arm");
   verb.option("--scene-seed N", a.scene_seed,
               "Draw other test scenes, from this seed; demonstrations follow --seeds. Not for presets of the "

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <vector>
 
 #include <lgabench/abstraction/chat_model.hpp>
 #include <lgabench/abstraction/nobody.hpp>
@@ -16,6 +17,7 @@
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/abstraction/selection_text.hpp>
 #include <lgabench/cli/commands.hpp>
+#include <lgabench/cli/reading_score.hpp>
 #include <lgabench/cli/select_score.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/rounding.hpp>
@@ -34,6 +36,7 @@ struct SelectArguments {
   int concurrency = 4, max_queries = -1;
   bool json = false, score = false;
   int scenes = 30;
+  std::vector<std::string> names, segments;
 };
 
 // What is asked: the words, and the truth where a scenario has one for them.
@@ -246,6 +249,12 @@ void add_select(CLI::App& app, int&) {
   verb.option("--scenes N", arguments->scenes, "With --score: test scenes of each arm", CLI::Range(1, 100000),
               with_default)
       ->needs(score);
+  verb.option("--names SOURCE,...", arguments->names,
+              "With --score: no answers, but what is read from test scenes with the true Selections: simulator, read, "
+              "read_balanced, read_drawn, read_robust")
+      ->needs(score);
+  verb.option("--segments SOURCE,...", arguments->segments, "Likewise, from segments of: simulator, difference")
+      ->needs(score);
   verb.option("--best-product FILE", arguments->best_product,
               "With --suite: write answers instead, of each command the product of types and textures that keeps "
               "what is meant in most training scenes (found by ascent, from the truth): a reference for --answers FILE")
@@ -270,7 +279,8 @@ void add_select(CLI::App& app, int&) {
   verb->footer(
       "openai asks the server at OPENAI_BASE_URL (any with OpenAI's API) with the key in OPENAI_API_KEY: one question "
       "for each object type and texture. An interrupted command continues from the cassette.\nExample: lgabench select "
-      "red_heart\nA table of a model's answers: lgabench select --suite words --score\nTo record for lgabench run "
+      "red_heart\nA table of a model's answers: lgabench select --suite words --score\nWhat is read from pictures: "
+      "lgabench select --suite pictures --score --names read,read_robust\nTo record for lgabench run "
       "--answers cassette:M.jsonl: lgabench select --suite q1 --answers openai "
       "--model M --cassette M.jsonl\n         lgabench select \"Bring me a fruit.\" --space household --answers openai "
       "--model M --cassette M.jsonl");
@@ -279,6 +289,9 @@ void add_select(CLI::App& app, int&) {
       throw InputError("select: expected a command, a scenario's id, or --suite");
     if (!arguments->best_product.empty())
       return write_best_products(load_suite(arguments->suite), read_truth(arguments->truth), arguments->best_product);
+    if (!arguments->names.empty() || !arguments->segments.empty())
+      return print_reading_scores(load_suite(arguments->suite), read_truth(arguments->truth), arguments->scenes,
+                                  arguments->json, arguments->names, arguments->segments);
     const Answerer answerer = make_answerer(*arguments);
     if (arguments->score) {
       const auto with_answers = [&](const Scenario& scenario, const std::function<void(LanguageModel&)>& use) {

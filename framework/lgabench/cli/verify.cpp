@@ -55,7 +55,7 @@ void add_differences(std::set<std::string>& why, const Json& there, const Json& 
 Cell with_present_data(const Recorded& recorded, std::set<std::string>& why) {
   Cell cell = recorded.cell;
   const std::string file = (recorded.directory / cell_file::configuration).string();
-  cell.data = data_hashes(read_scenario(*cell.scenario, file + ": /scenario"), cell.answers);
+  cell.data = data_hashes(read_scenario(*cell.scenario, file + ": /scenario"), cell.answers, cell.reading);
   add_differences(why, recorded.cell.data, cell.data, "data: ");
   return cell;
 }

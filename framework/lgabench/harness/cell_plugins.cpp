@@ -18,10 +18,17 @@ std::vector<PluginInfo> axis_plugins(const Cell& cell, const Catalogue& catalogu
   return plugins;
 }
 
+const PluginInfo* perceiver_plugin(const Cell& cell, const Catalogue& catalogue) {
+  const std::string id = cell.reading.plugin();
+  return id.empty() ? nullptr : &catalogue.find("perceiver", id);
+}
+
 Json build_of(const Cell& cell, const Catalogue& catalogue) {
   Json build = build_hashes(catalogue.find("engine", cell.engine), method_plugin(cell, catalogue), cell.needs_axes());
   if (const PluginInfo* acts = acting_plugin(cell, catalogue)) build["acts"] = acts->sha256;
-  for (const PluginInfo& axis : axis_plugins(cell, catalogue)) add_axis(build, axis);
+  for (const PluginInfo& axis : axis_plugins(cell, catalogue)) add_seen_through(build, axis);
+  if (const PluginInfo* perceiver = perceiver_plugin(cell, catalogue)) add_seen_through(build, *perceiver);
+  if (cell.reading.needs_library()) build[seeing_library] = library_hash(seeing_library);
   return build;
 }
 

@@ -13,6 +13,8 @@ const PluginInfo* method_plugin(const Cell& cell, const Catalogue& catalogue);
 const PluginInfo* acting_plugin(const Cell& cell, const Catalogue& catalogue);
 /// Those whose axes its arms have. @throws likewise.
 std::vector<PluginInfo> axis_plugins(const Cell& cell, const Catalogue& catalogue);
+/// What reads its names; null where no plugin does. @throws likewise.
+const PluginInfo* perceiver_plugin(const Cell& cell, const Catalogue& catalogue);
 
 /// Hashes of all that computes the cell, by name. @throws likewise.
 Json build_of(const Cell& cell, const Catalogue& catalogue);

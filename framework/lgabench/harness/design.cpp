@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include <lgabench/abstraction/reading.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/scenario.hpp>
@@ -72,8 +73,8 @@ TrainOn train_on_of(const JsonReader& reader) {
 
 const std::vector<std::string> needed_design_members{"scenarios",      "layouts", "engines",  "methods",
                                                      "demonstrations", "seeds",   "episodes", "scene_seed"};
-const std::vector<std::string> optional_design_members{"test_scenes",      "smoke",         "options",
-                                                       "selection_errors", "perturbations", "train_on"};
+const std::vector<std::string> optional_design_members{"test_scenes",   "smoke",    "options", "selection_errors",
+                                                       "perturbations", "train_on", "names",   "segments"};
 
 std::string name_among(const JsonReader& element, const char* what, const std::vector<std::string>& known) {
   const std::string name = element.string();
@@ -105,6 +106,8 @@ Json to_json(const Design& design) {
   for (const DesignAxis& axis : design.perturbations) json["perturbations"].push_back(to_json(axis));
   if (!design.arms.empty()) json["arms"] = design.arms;
   if (design.train_on) json["train_on"] = to_json(*design.train_on);
+  if (!design.names.empty()) json["names"] = design.names;
+  if (!design.segments.empty()) json["segments"] = design.segments;
   return json;
 }
 
@@ -139,6 +142,9 @@ Design apply(const JsonReader& overrides, Design design) {
   if (overrides.has("perturbations")) design.perturbations = perturbations_of(overrides.at("perturbations"));
   if (overrides.has("arms")) design.arms = distinct_names(overrides.at("arms"));
   if (overrides.has("train_on")) design.train_on = train_on_of(overrides.at("train_on"));
+  if (overrides.has("names")) design.names = distinct_names(overrides.at("names"));
+  if (overrides.has("segments"))
+    design.segments = distinct_values<std::string>(overrides.at("segments"), read_segments);
   if (overrides.has("smoke")) design.smoke = overrides.at("smoke").boolean();
   return design;
 }

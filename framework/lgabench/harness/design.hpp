@@ -36,6 +36,8 @@ struct Design {
   std::vector<DesignAxis> perturbations{};
   std::vector<std::string> arms{};         // which of the suite's are played; none: all
   std::optional<TrainOn> train_on{};       // what demonstrations are perceived through
+  std::vector<std::string> names{};        // where methods' names come from (Reading); none: the simulator
+  std::vector<std::string> segments{};     // likewise
   std::string options_place = "/options";  // in the suite's file, for messages; no member
 };
 

@@ -31,8 +31,9 @@ Answering participants(const Competitor& method, const Scenario& scenario, const
 // A method that people answer for shall not vanish from the table because they were asked about other scenarios.
 void expect_each_method(const std::vector<Competitor>& methods, const std::vector<Cell>& cells) {
   for (const Competitor& method : methods)
-    if (std::none_of(cells.begin(), cells.end(),
-                     [&](const Cell& c) { return c.method.name == method.name + c.selection_errors.suffix(); }))
+    if (std::none_of(cells.begin(), cells.end(), [&](const Cell& c) {
+          return c.method.name == method.name + c.selection_errors.suffix() + c.reading.suffix();
+        }))
       throw InputError(
           fmt::format("--humans: expected answers for {} in a scenario of this run, there are none", method.name));
 }
@@ -89,6 +90,29 @@ void expect_errors_possible(const Suite& suite, const Scenario& scenario, const 
     throw InputError(fmt::format("{}: /selection_errors: scenario {}: {}", suite.file, scenario.id, why));
 }
 
+// Every pair of where names and where segments come from; the simulator's where the design says nothing.
+std::vector<Reading> readings_of(const Suite& suite, const Design& design, const Catalogue& catalogue) {
+  const std::vector<std::string> simulator{Reading::simulator};
+  std::vector<std::string> known{Reading::simulator};
+  known.insert(known.end(), names_read().begin(), names_read().end());
+  for (const PluginInfo& plugin : catalogue.plugins)
+    if (plugin.kind == "perceiver") known.push_back(plugin.id);
+  std::vector<Reading> all;
+  for (const std::string& names : design.names.empty() ? simulator : design.names)
+    for (const std::string& segments : design.segments.empty() ? simulator : design.segments) {
+      if (!has(known, names))
+        throw InputError(fmt::format("{}: /names: {}", suite.file, none_named("names or perceiver", names, known)));
+      all.push_back({names, segments});
+    }
+  return all;
+}
+
+void expect_read(const Suite& suite, const Scenario& scenario, const std::vector<Reading>& readings) {
+  for (const Reading& reading : readings)
+    if (const std::string why = why_not_read(scenario, reading); !why.empty())
+      throw InputError(fmt::format("{}: /names{}: scenario {}: {}", suite.file, reading.suffix(), scenario.id, why));
+}
+
 // A perturbation of what the engine does not simulate would be none.
 void expect_dynamics(const Scenario& scenario, const PluginInfo& engine) {
   if (!engine.kinematic) return;
@@ -124,7 +148,7 @@ Cell unplayed_cell(const Suite& suite, const Design& design, const Scenario& sce
   cell.test_scenes = design.test_scenes;
   cell.episodes = design.episodes;
   cell.answers = answers;
-  cell.data = data_hashes(scenario, cell.answers);
+  cell.data = data_hashes(scenario, cell.answers, cell.reading);
   cell.smoke = design.smoke;
   return cell;
 }
@@ -206,19 +230,23 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
         references.push_back({"reference", row.id, row.id, "1", Json::object()});
   std::vector<SelectionErrors> all_errors = design.selection_errors;
   if (all_errors.empty()) all_errors.emplace_back();
+  const std::vector<Reading> readings = readings_of(suite, design, catalogue);
   std::vector<Cell> cells;
   for (const std::string& id : suite_scenario_ids(suite, design)) {
     const Scenario scenario = suite_scenario(suite, id, variation.truth, &design);
     expect_own_scenes(suite, design, scenario);
     expect_layouts(scenario, design.layouts);
     expect_errors_possible(suite, scenario, all_errors);
+    expect_read(suite, scenario, readings);
     for (const std::string& engine : design.engines) expect_dynamics(scenario, catalogue.find("engine", engine));
     Cell cell = unplayed_cell(suite, design, scenario, variation.answers);
     const auto add = [&](const Competitor& method, int demonstrations, std::uint64_t seed,
-                         const SelectionErrors& errors = {}) {
+                         const SelectionErrors& errors = {}, const Reading& reading = {}) {
       cell.method = method;
-      cell.method.name += errors.suffix();
+      cell.method.name += errors.suffix() + reading.suffix();
       cell.selection_errors = errors;
+      cell.reading = reading;
+      cell.data = data_hashes(scenario, cell.answers, reading);
       cell.train_on = method.is_reference() ? std::nullopt : design.train_on;
       cell.demonstrations = demonstrations;
       cell.training_seed = seed;
@@ -235,7 +263,8 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
           for (const std::uint64_t seed : design.seeds) {
             for (const Competitor& method : methods)
               for (const SelectionErrors& errors : all_errors)
-                if (errors.none() || !has(suite.selects_nothing, method.id)) add(method, n, seed, errors);
+                if (errors.none() || !has(suite.selects_nothing, method.id))
+                  for (const Reading& reading : readings) add(method, n, seed, errors, reading);
             for (const Competitor& row : references)
               if (learns(row) && n > 0) add(row, n, seed);
           }

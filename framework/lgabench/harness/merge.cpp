@@ -25,8 +25,8 @@ namespace lgabench {
 namespace {
 
 // Lists among a run's settings that another part may add to.
-constexpr std::array<std::string_view, 7> grid_lists{"methods",        "scenarios", "layouts",         "engines",
-                                                     "demonstrations", "seeds",     "selection_errors"};
+constexpr std::array<std::string_view, 9> grid_lists{
+    "methods", "scenarios", "layouts", "engines", "demonstrations", "seeds", "selection_errors", "names", "segments"};
 
 // A run to read from, which nobody writes into meanwhile.
 class Part {
@@ -88,10 +88,12 @@ void unite(RunRecord& all, const Part& first, const Part& part) {
   RunRecord more = part.record();
   if (all.cells == more.cells) return;
   const std::string differs = difference(all, more);
-  // A run that makes no errors need not say so.
+  // A run that makes no errors, and reads nothing, need not say so.
   for (auto [lacks, has] : {std::pair{&all.request, &more.request}, std::pair{&more.request, &all.request}})
-    if (has->contains("selection_errors") && !lacks->contains("selection_errors"))
-      (*lacks)["selection_errors"] = Json::array({Json::object()});
+    for (const auto& [member, none] : {std::pair{"selection_errors", Json::object()},
+                                       {"names", Json(Reading::simulator)},
+                                       {"segments", Json(Reading::simulator)}})
+      if (has->contains(member) && !lacks->contains(member)) (*lacks)[member] = Json::array({none});
   for (const auto& [member, value] : more.request.items()) {
     const bool may_grow = std::count(grid_lists.begin(), grid_lists.end(), member) > 0;
     Json& there = all.request[member];
@@ -115,15 +117,15 @@ void unite(RunRecord& all, const Part& first, const Part& part) {
 Json build_of(const Part& part, const Cell& cell) {
   Json build = part.record().build;
   if (!cell.needs_axes()) build.erase(perturbation_library);
+  if (!cell.reading.needs_library()) build.erase(seeing_library);
   const auto plugin = [&](const std::string& kind, const std::string& id) {
     const auto found = part.programs().find(kind + " " + id);
     if (found != part.programs().end()) build[kind] = *found;
   };
   plugin("engine", cell.engine);
   if (!cell.method.is_reference()) plugin("method", cell.method.id);
-  for (const std::string& id : cell.plugin_axes())
-    if (const auto found = part.programs().find("perturbation " + id); found != part.programs().end())
-      build[axis_in_build(id)] = *found;
+  for (const std::string& name : seen_through_in_build(cell))
+    if (const auto found = part.programs().find(name); found != part.programs().end()) build[name] = *found;
   return build;
 }
 

@@ -61,6 +61,7 @@ RunRecord describe(const RunPlan& plan, const Catalogue& catalogue) {
     run.cells.push_back(key(cell));
     name(catalogue.find("engine", cell.engine));
     for (const PluginInfo& axis : axis_plugins(cell, catalogue)) name(axis);
+    if (const PluginInfo* perceiver = perceiver_plugin(cell, catalogue)) name(*perceiver);
     if (const PluginInfo* method = method_plugin(cell, catalogue)) {
       name(*method);
       if (const PluginInfo* acts = acting_plugin(cell, catalogue)) name(*acts);
@@ -71,7 +72,7 @@ RunRecord describe(const RunPlan& plan, const Catalogue& catalogue) {
       }
     }
     run.build.update(build_of(cell, catalogue));
-    for (const std::string& id : cell.plugin_axes()) run.build.erase(axis_in_build(id));
+    for (const std::string& plugin : seen_through_in_build(cell)) run.build.erase(plugin);
   }
   for (const char* plugin : {"engine", "method", "python", "acts"}) run.build.erase(plugin);
   run.suite = plan.request.at("suite");

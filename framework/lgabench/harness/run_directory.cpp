@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <map>
 
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
@@ -60,6 +61,13 @@ void expect_taken_up(const fs::path& path, const RunRecord& run, Existing existi
 
 }  // namespace
 
+std::string library_hash(const char* name) {
+  static std::map<std::string, std::string> hashes;
+  std::string& hash = hashes[name];
+  if (hash.empty()) hash = sha256_file(program_directory().parent_path() / "lib" / name);
+  return hash;
+}
+
 Json build_hashes(const PluginInfo& engine, const PluginInfo* method, bool axes) {
   static const Json programs = [] {
     const fs::path bin = program_directory();
@@ -70,25 +78,27 @@ Json build_hashes(const PluginInfo& engine, const PluginInfo* method, bool axes)
     for (const std::string& name : libraries) hashes[name] = sha256_file(bin.parent_path() / "lib" / name);
     return hashes;
   }();
-  static const fs::path perturbations = program_directory().parent_path() / "lib" / perturbation_library;
   Json build = programs;
-  if (axes) {
-    static const std::string hash = sha256_file(perturbations);
-    build[perturbation_library] = hash;
-  }
+  if (axes) build[perturbation_library] = library_hash(perturbation_library);
   build["engine"] = engine.sha256;
   if (method) build["method"] = method->sha256;
   if (method && !method->python.is_null()) build["python"] = canonical(method->python.at("versions"));
   return build;
 }
 
-std::string axis_in_build(const std::string& id) { return "perturbation " + id; }
+std::vector<std::string> seen_through_in_build(const Cell& cell) {
+  std::vector<std::string> names;
+  for (const std::string& id : cell.plugin_axes()) names.push_back("perturbation " + id);
+  if (const std::string id = cell.reading.plugin(); !id.empty()) names.push_back("perceiver " + id);
+  return names;
+}
 
-void add_axis(Json& build, const PluginInfo& axis) {
-  build[axis_in_build(axis.id)] = axis.sha256;
-  if (axis.python.is_null()) return;
+void add_seen_through(Json& build, const PluginInfo& plugin) {
+  const std::string name = plugin.kind + " " + plugin.id;
+  build[name] = plugin.sha256;
+  if (plugin.python.is_null()) return;
   Json versions = build.contains("python") ? parse_json(build["python"].get<std::string>(), "build") : Json::object();
-  versions[axis_in_build(axis.id)] = axis.python.at("versions");
+  versions[name] = plugin.python.at("versions");
   build["python"] = canonical(versions);
 }
 

@@ -327,6 +327,7 @@ CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& ce
               plan.live};
   job.keeps_policy = plan.keeps_policies;
   job.axes = axis_plugins(cell, catalogue);
+  if (const PluginInfo* perceiver = perceiver_plugin(cell, catalogue)) job.perceiver = *perceiver;
   if (const PluginInfo* method = method_plugin(cell, catalogue)) {
     job.method = *method;
     if (const PluginInfo* acts = acting_plugin(cell, catalogue)) job.acts = *acts;  // which alone is told the truth

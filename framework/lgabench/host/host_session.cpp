@@ -45,14 +45,14 @@ Json plugin_json(const PluginInfo& plugin) {
   return json;
 }
 
-// A perturbation is told of pictures alone.
+// A perturbation and a perceiver are told of pictures alone.
 Json hello_of(const HostJob& job, const protocol::Layout& layout) {
   Json hello{{"type", "hello"},
              {"protocol", protocol_version},
              {job.plugin.kind, plugin_json(job.plugin)},
              {"limits", {{"header_bytes", most_header_bytes}, {"payload_bytes", most_payload_bytes}}}};
   hello.update(protocol::to_json(layout));
-  if (job.plugin.kind == "perturbation")
+  if (job.plugin.kind == "perturbation" || job.plugin.kind == "perceiver")
     hello.erase("action");
   else
     hello.update({{"options", job.options}, {"seed", job.seed}});

@@ -17,7 +17,7 @@ namespace lgabench {
 
 /// What a plugin's process is started with.
 struct HostJob {
-  PluginInfo plugin;                            // a method or a perturbation
+  PluginInfo plugin;                            // a method, a perturbation or a perceiver
   std::string environment;                      // the cell's
   Json options;                                 // every one
   std::uint64_t seed;                           // as Services::seed

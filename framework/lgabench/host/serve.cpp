@@ -359,7 +359,8 @@ PluginInfo named_plugin(const Frame& hello, const char* kind) {
 void serve(Channel& channel) {
   std::optional<Frame> hello = channel.receive();
   if (!hello) return;
-  if (hello->header.contains("perturbation")) return serve_perturbation(channel, std::move(*hello));
+  if (hello->header.contains("perturbation") || hello->header.contains("perceiver"))
+    return serve_perturbation(channel, std::move(*hello));
   std::optional<Host> host;
   if (!told(channel, [&] { host.emplace(channel, *hello); })) return;
   hello.reset();  // its file is mapped by now

@@ -15,19 +15,19 @@ namespace {
 void expect_size(const Observation& perceived, PictureSize picture) {
   const std::size_t pixels = picture.pixels();
   if (perceived.rgb.size() != 3 * pixels || perceived.ids.size() != pixels)
-    throw MethodError(fmt::format("perceive() returned {} bytes of rgb and {} of ids, expected {} and {}",
-                                  perceived.rgb.size(), perceived.ids.size(), 3 * pixels, pixels));
+    throw MethodError(fmt::format("it returned {} bytes of rgb and {} of ids, expected {} and {}", perceived.rgb.size(),
+                                  perceived.ids.size(), 3 * pixels, pixels));
 }
 
-// One plugin from loading to its end.
+// One plugin, a perturbation or a perceiver, from loading to its end.
 class PerturbationHost {
  public:
   PerturbationHost(Channel& channel, const Frame& hello)
       : channel_(channel),
         picture_(protocol::read_picture_size({hello.header, "hello"})),
         memory_(hello.file, protocol::observation_bytes(picture_)),
-        plugin_(named_plugin(hello, "perturbation")),
-        perturbation_(load_perturbation(plugin_)) {
+        plugin_(named_plugin(hello, hello.header.contains("perceiver") ? "perceiver" : "perturbation")) {
+    load();
     channel_.send(
         {{"type", "hello"}, {"protocol", protocol_version}, {"id", plugin_.id}, {"version", plugin_.version}});
   }
@@ -36,7 +36,7 @@ class PerturbationHost {
     const JsonReader reader(frame.header, frame.type());
     if (frame.type() == "perceive") return perceive(reader);
     if (frame.type() == "drop") {
-      perturbation_.reset();
+      drop();
       return channel_.send({{"type", "dropped"}});
     }
     if (frame.type() != "state") throw MethodError(fmt::format("no frame of a worker: \"{}\"", frame.type()));
@@ -48,7 +48,7 @@ class PerturbationHost {
   }
 
   void end() {
-    perturbation_.reset();
+    drop();
     std::cout.flush();
     std::fflush(nullptr);  // the worker ends this process once it has the answer
     channel_.send({{"type", "bye"}});
@@ -58,15 +58,34 @@ class PerturbationHost {
   void perceive(const JsonReader& reader) {
     Observation seen;
     protocol::read_observation(memory_, picture_, reader.at("instances"), false, seen);
-    const int level = static_cast<int>(reader.at("level").integer(1, 1 << 16));
-    if (!perturbation_) perturbation_ = load_perturbation(plugin_);  // check-plugin had the first destroyed
+    load();  // check-plugin may have had the first destroyed
     const FlushDenormalsAgain on_every_way_out;
-    const Observation perceived =
-        perturbation_->perceive(std::move(seen), level, RandomStream(reader.at("stream").string()));
+    const Observation perceived = perceiver_ ? perceiver_->read(std::move(seen), space_of(reader.at("space")))
+                                             : perturbed(std::move(seen), reader);
     flushed_ = flushed_ && denormals_flushed();
     expect_size(perceived, picture_);
     for (const Frame& frame : {protocol::ids_frame(perceived), protocol::perceived_frame(perceived)})
       channel_.send(frame.header, frame.payload);
+  }
+
+  Observation perturbed(Observation seen, const JsonReader& reader) {
+    const int level = static_cast<int>(reader.at("level").integer(1, 1 << 16));
+    return perturbation_->perceive(std::move(seen), level, RandomStream(reader.at("stream").string()));
+  }
+
+  static FeatureSpace space_of(const JsonReader& reader) {
+    return {reader.at("id").string(), reader.at("object_types").strings(), reader.at("textures").strings()};
+  }
+
+  void load() {
+    if (plugin_.kind == "perceiver" && !perceiver_)
+      perceiver_ = load_perceiver(plugin_);
+    else if (plugin_.kind == "perturbation" && !perturbation_)
+      perturbation_ = load_perturbation(plugin_);
+  }
+  void drop() {
+    perceiver_.reset();
+    perturbation_.reset();
   }
 
   Channel& channel_;
@@ -76,6 +95,7 @@ class PerturbationHost {
   bool flushed_ = true;                              // subnormal numbers, at the end of every call
   PluginInfo plugin_;
   std::unique_ptr<ObservationPerturbation> perturbation_;
+  std::unique_ptr<Perceiver> perceiver_;
 };
 
 }  // namespace

@@ -96,6 +96,7 @@ Json to_json(const CellJob& job) {
   if (job.method) json["method"] = plugin_json(*job.method);
   if (job.acts) json["acts"] = plugin_json(*job.acts);
   for (const PluginInfo& axis : job.axes) json["axes"].push_back(plugin_json(axis));
+  if (job.perceiver) json["perceiver"] = plugin_json(*job.perceiver);
   if (job.live) json["live"] = to_json(*job.live);
   if (job.debugger) json["debugger"] = *job.debugger;
   return json;
@@ -121,6 +122,7 @@ CellJob read_cell_job(const JsonReader& reader) {
   job.keeps_policy = reader.at("keeps_policy").boolean();
   if (reader.has("axes"))
     for (const JsonReader& axis : reader.at("axes").elements()) job.axes.push_back(plugin_of(axis));
+  if (reader.has("perceiver")) job.perceiver = plugin_of(reader.at("perceiver"));
   if (reader.has("live")) job.live = live_of(reader.at("live"));
   if (reader.has("debugger")) job.debugger = reader.at("debugger").strings();
   return job;

@@ -49,6 +49,7 @@ struct CellJob {
   std::optional<std::vector<std::string>> debugger{};  // of HostJob
   bool keeps_policy = false;                           // what is learned stays with the cell
   std::vector<PluginInfo> axes{};                      // perturbations that its scenario has of plugins
+  std::optional<PluginInfo> perceiver{};               // what reads the cell's names, where that is a plugin
 };
 Json to_json(const CellJob& job);
 /// @throws InputError; PluginError where a plugin is refused, or another one by now.
@@ -64,7 +65,7 @@ struct CheckJob {
   std::filesystem::path report;      // gets a CheckReport
   Limits limits{};
   std::string environment{};                 // to play in; "": check_method() and the like say which
-  std::optional<PluginInfo> perturbation{};  // that is checked instead
+  std::optional<PluginInfo> perturbation{};  // that is checked instead; or a perceiver
 };
 Json to_json(const CheckJob& job);
 /// @throws as read_cell_job().

@@ -83,6 +83,7 @@ std::string other_setting(const Json& cell, const Json& expected) {
     return fmt::format("{} is {}, the board's preset has {}", member, canonical(there), canonical(value));
   }
   if (cell.contains("selection_errors")) return "errors were made in what was selected (selection_errors)";
+  if (cell.contains("names") || cell.contains("segments")) return "names were read from pictures (names, segments)";
   if (cell.contains("train_on")) return "demonstrations were seen through a perturbation (train_on)";
   return cell.contains("participant") ? "based on a person's answers, for which the board has no place" : "";
 }

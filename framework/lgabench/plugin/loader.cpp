@@ -86,4 +86,6 @@ std::unique_ptr<ObservationPerturbation> load_perturbation(const PluginInfo& plu
   return load<ObservationPerturbation>(plugin, "perturbation");
 }
 
+std::unique_ptr<Perceiver> load_perceiver(const PluginInfo& plugin) { return load<Perceiver>(plugin, "perceiver"); }
+
 }  // namespace lgabench

@@ -8,6 +8,7 @@
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/method.hpp>
 #include <lgabench/core/observation_perturbation.hpp>
+#include <lgabench/core/perceiver.hpp>
 #include <lgabench/core/physics_world.hpp>
 
 namespace lgabench {
@@ -48,8 +49,8 @@ struct Catalogue {
   std::vector<PluginInfo> plugins;
   std::vector<Refusal> refused;
 
-  /// `kind` is "method", "engine" or "perturbation". @throws PluginError that lists the known ids and repeats the
-  /// refusal of a file of that name.
+  /// `kind` is "method", "engine", "perturbation" or "perceiver". @throws PluginError that lists the known ids and
+  /// repeats the refusal of a file of that name.
   const PluginInfo& find(const std::string& kind, const std::string& id) const;
 };
 
@@ -68,6 +69,7 @@ Catalogue scan_plugins(const std::vector<fs::path>& directories);
 std::unique_ptr<Method> load_method(const PluginInfo& plugin);
 std::unique_ptr<PhysicsWorld> load_engine(const PluginInfo& plugin);
 std::unique_ptr<ObservationPerturbation> load_perturbation(const PluginInfo& plugin);
+std::unique_ptr<Perceiver> load_perceiver(const PluginInfo& plugin);
 
 /// Adds the axes of its perturbations (add_plugin_axis). One whose id is taken is refused.
 void add_axes(Catalogue& catalogue);

@@ -15,6 +15,7 @@
 
 #include <lgabench/core/method.hpp>
 #include <lgabench/core/observation_perturbation.hpp>
+#include <lgabench/core/perceiver.hpp>
 #include <lgabench/core/physics_world.hpp>
 #include <lgabench/plugin/descriptor.hpp>
 #include <lgabench/plugin/fingerprint.hpp>
@@ -58,6 +59,11 @@
 /// order.
 #define LGABENCH_PERTURBATION(id, version, summary, Class, axis_json) \
   LGABENCH_PLUGIN_("perturbation", "", id, version, summary, ::lgabench::ObservationPerturbation, Class, axis_json)
+
+/// What reads names from pictures: `Class` derives from lgabench::Perceiver and has a default constructor. Once in a
+/// library.
+#define LGABENCH_PERCEIVER(id, version, summary, Class) \
+  LGABENCH_PLUGIN_("perceiver", "", id, version, summary, ::lgabench::Perceiver, Class, "{}")
 
 // The descriptor stands in a section of its own, so that `readelf -p .lgabench` shows it too.
 // NOLINTBEGIN(bugprone-macro-parentheses): Interface and Class are types.

@@ -236,9 +236,9 @@ PluginInfo inspect_plugin(const fs::path& file) {
   plugin.fingerprint = text(d.fingerprint, "fingerprint");
   check_fingerprint(plugin.fingerprint);
   plugin.kind = text(d.kind, "kind");
-  if (plugin.kind != "method" && plugin.kind != "engine" && plugin.kind != "perturbation")
-    throw PluginError(
-        fmt::format("descriptor: kind \"{}\", expected \"method\", \"engine\" or \"perturbation\"", plugin.kind));
+  if (plugin.kind != "method" && plugin.kind != "engine" && plugin.kind != "perturbation" && plugin.kind != "perceiver")
+    throw PluginError(fmt::format(
+        "descriptor: kind \"{}\", expected \"method\", \"engine\", \"perturbation\" or \"perceiver\"", plugin.kind));
   plugin.asks = text(d.asks, "asks");
   check_asks(plugin.kind, plugin.asks);
   plugin.id = text(d.id, "id");

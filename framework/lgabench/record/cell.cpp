@@ -86,6 +86,8 @@ Json to_json(const Cell& cell) {
   if (cell.participant) json["participant"] = {{"id", cell.participant->id}, {"sha256", cell.participant->sha256}};
   if (!cell.selection_errors.none()) json["selection_errors"] = to_json(cell.selection_errors);
   if (cell.train_on) json["train_on"] = to_json(*cell.train_on);
+  if (cell.reading.names != Reading::simulator) json["names"] = cell.reading.names;
+  if (cell.reading.segments != Reading::simulator) json["segments"] = cell.reading.segments;
   if (cell.participant && cell.participant->rehearsal) json["participant"]["rehearsal"] = true;
   return json;
 }
@@ -94,7 +96,7 @@ Cell read_cell(const Json& json, const std::string& file) {
   const JsonReader reader(json, file);
   reader.only({"suite", "environment", "layout", "scenario", "engine", "method", "demonstrations", "training_seed",
                "scene_seed", "test_scenes", "episodes", "answers", "participant", "selection_errors", "train_on",
-               "data", "smoke"});
+               "names", "segments", "data", "smoke"});
   const JsonReader method = reader.at("method");
   method.only({"kind", "id", "name", "version", "options", "asks", "acts"});
   constexpr long long most = std::numeric_limits<int>::max();
@@ -126,6 +128,8 @@ Cell read_cell(const Json& json, const std::string& file) {
   }
   if (reader.has("selection_errors")) cell.selection_errors = read_selection_errors(reader.at("selection_errors"));
   if (reader.has("train_on")) cell.train_on = read_train_on(reader.at("train_on"));
+  if (reader.has("names")) cell.reading.names = reader.at("names").string();
+  if (reader.has("segments")) cell.reading.segments = read_segments(reader.at("segments"));
   cell.data = reader.at("data").json();
   cell.smoke = reader.at("smoke").boolean();
   return cell;
@@ -144,13 +148,15 @@ double recorded_seconds(const fs::path& directory) {
 
 std::string key(const Cell& cell) { return sha256(canonical(to_json(cell))).substr(0, 16); }
 
-Json data_hashes(const Scenario& scenario, const AnswerSource& answers) {
+Json data_hashes(const Scenario& scenario, const AnswerSource& answers, const Reading& reading) {
   const fs::path data = data_directory();
   Json hashes{{"feature_space", sha256_file(data / "spaces" / (scenario.space.id + ".json"))},
               {"answers", folder_hash(data / "answers")},
               {"embeddings", folder_hash(data / "embeddings")}};
   if (const fs::path own = data / scenario.environment; fs::is_directory(own)) hashes["environment"] = folder_hash(own);
   if (std::holds_alternative<LiveAnswers>(answers)) hashes["prompt"] = PromptTemplate().version();
+  if (const fs::path file = reader_file(scenario.environment, reading); !file.empty())
+    hashes["reader"] = sha256_file(file);
   return hashes;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/abstraction/reading.hpp>
 #include <lgabench/abstraction/selection_errors.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/scenario.hpp>
@@ -56,6 +57,7 @@ struct Cell {
   std::optional<CellParticipant> participant;  // of a method that asks people, where there are any
   SelectionErrors selection_errors;            // made in what the method selects
   std::optional<TrainOn> train_on;             // what the method's demonstrations are perceived through
+  Reading reading;                             // of what the method sees
   Json data;                                   // sha256 of the shipped data that the cell reads
   bool smoke = false;
 
@@ -91,7 +93,7 @@ double recorded_seconds(const std::filesystem::path& directory);
 std::string key(const Cell& cell);
 
 /// SHA-256 of what the data directory holds for this scenario: feature space, answers, sentence embeddings; where a
-/// model is asked live the prompt too.
-Json data_hashes(const Scenario& scenario, const AnswerSource& answers);
+/// model is asked live the prompt too, and where names are read the reader's file.
+Json data_hashes(const Scenario& scenario, const AnswerSource& answers, const Reading& reading);
 
 }  // namespace lgabench

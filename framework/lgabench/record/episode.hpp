@@ -13,7 +13,7 @@ namespace lgabench {
 
 /// What a failure may be attributed to, in a fixed order: to perception where the same policy succeeds in the scene
 /// seen as it is, to the abstraction where it succeeds with the true mask, else to the policy.
-constexpr std::array<const char*, 3> attributions{"abstraction", "policy", "perception"};
+constexpr std::array<const char*, 4> attributions{"abstraction", "policy", "perception", "reading"};
 
 /// What an episode took where an axis gives other commands (PerturbationAxis::other): what the scene's own command
 /// means, what the other one means, something else, or nothing.

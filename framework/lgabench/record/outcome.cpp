@@ -8,7 +8,7 @@ namespace lgabench {
 namespace {
 
 constexpr char success_letter = '.', unknown_letter = '.';
-constexpr std::array attribution_letters{'a', 'p', 's'};  // of `attributions`
+constexpr std::array attribution_letters{'a', 'p', 's', 'r'};  // of `attributions`
 static_assert(attribution_letters.size() == attributions.size());
 
 }  // namespace

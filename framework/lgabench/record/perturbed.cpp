@@ -15,6 +15,7 @@ Json to_json(const PerturbedEpisode& e) {
   Json json{{"arm", e.arm}, {"index", e.index}, {"axis", text_or_null(e.axis)}, {"level", e.level}};
   for (std::size_t part = 0; part < parts; ++part) json[part_names[part]] = text_or_null(e.hashes[part]);
   json["read"] = text_or_null(e.read);
+  if (!e.names.empty()) json["names"] = e.names;
   json["target_scale"] = e.target_scale;
   return json;
 }
@@ -28,6 +29,7 @@ PerturbedEpisode read_perturbed_episode(const JsonReader& reader) {
   e.level = static_cast<int>(reader.at("level").integer(e.axis.empty() ? 0 : 1, e.axis.empty() ? 0 : most));
   for (std::size_t part = 0; part < parts; ++part) e.hashes[part] = text_at(reader.at(part_names[part]));
   e.read = text_at(reader.at("read"));
+  if (reader.has("names")) e.names = text_at(reader.at("names"));
   if (reader.has("target_scale")) e.target_scale = reader.at("target_scale").number();
   return e;
 }

@@ -19,6 +19,7 @@ struct PerturbedEpisode {
   std::string
       read{};  // of the pictures and texts that the policy says it made its action of; "" where it does not tell
   double target_scale = 1;  // the target's size, times its type's
+  std::string names{};      // hash of ids and names as they were read; "" where nothing was
 };
 
 /// {"arm", "index", "axis", "level", "objects": HASH, ..., "read", "target_scale"}; null for "".

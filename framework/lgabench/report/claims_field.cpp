@@ -35,6 +35,8 @@ Json value_of(const CellResult& cell, const std::string& option) {
   if (cell.options.contains(option)) return cell.options.at(option);
   if (option == "missing") return cell.configuration.selection_errors.missing;
   if (option == "added") return cell.configuration.selection_errors.added;
+  if (option == "names") return cell.configuration.reading.names;
+  if (option == "segments") return cell.configuration.reading.segments;
   return nullptr;
 }
 

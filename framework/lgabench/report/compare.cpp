@@ -23,8 +23,8 @@ struct CellPair {
 // Whose methods differ is measured alike where two `rows` are compared.
 auto measures(const CellResult& c, bool rows) {
   return std::tuple(c.layout, c.engine, c.scenario, rows ? "" : c.id, rows ? "" : canonical(c.options),
-                    rows ? "" : c.configuration.selection_errors.suffix(), c.demonstrations, c.training_seed,
-                    c.participant);
+                    rows ? "" : c.configuration.selection_errors.suffix() + c.configuration.reading.suffix(),
+                    c.demonstrations, c.training_seed, c.participant);
 }
 
 // The run without its other rows. @throws InputError where there is no such row

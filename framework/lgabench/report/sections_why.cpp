@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <iterator>
 #include <map>
 #include <set>
@@ -230,11 +231,15 @@ Section failures(const Material& material) {
 
 Section attribution(const Material& material) {
   Section section{"attribution", "What failures are attributed to"};
-  const auto perceived = [](const Row& row) { return row.attributed_to("perception") > 0; };
-  const bool any_perceived =
-      std::any_of(material.summary.tables.begin(), material.summary.tables.end(),
-                  [&](const Table& table) { return std::any_of(table.rows.begin(), table.rows.end(), perceived); });
-  const std::vector<const char*> causes(attributions.begin(), attributions.end() - (any_perceived ? 0 : 1));
+  const auto any = [&](const char* cause) {
+    const auto has = [cause](const Row& row) { return row.attributed_to(cause) > 0; };
+    return std::any_of(material.summary.tables.begin(), material.summary.tables.end(),
+                       [&](const Table& table) { return std::any_of(table.rows.begin(), table.rows.end(), has); });
+  };
+  const bool any_read = any("reading"), any_perceived = any("perception");
+  std::vector<const char*> causes{"abstraction", "policy"};
+  if (any_perceived) causes.push_back("perception");
+  if (any_read) causes.push_back("reading");
   Endings endings("attribution", "share of failures",
                   "Failures attributed to abstraction or policy, over all scenarios",
                   "Each scenario's failures, attributed to abstraction or policy");
@@ -253,11 +258,15 @@ Section attribution(const Material& material) {
       endings.add(material, table, row, bar(parts, row.attributed()), std::move(numbers));
     }
   if (endings.mean.rows.empty() && endings.levels.rows.empty()) return section;
-  const char* seen = "Perception, where the same policy succeeds in the same scene seen without error; else the";
+  std::string seen;
+  if (any_read) seen = "Reading, where the same policy succeeds with the simulator's names in the same picture; else ";
+  if (any_perceived) seen += "perception, where the same policy succeeds in the same scene seen without error; else ";
+  seen += "the";
+  seen.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(seen.front())));
   section.add(reading, Paragraph{{fmt::format("{} abstraction, where the same policy succeeds in the same scene with "
                                               "the true mask; else the policy. Episodes over all scenarios, of methods "
                                               "that select.",
-                                              any_perceived ? seen : "The")}});
+                                              seen)}});
   endings.put_into(section);
   return section;
 }

@@ -13,7 +13,7 @@ function episodesOf(row) {
           all.push({
             cell, arm: played.arm, index, scene, command: cell.commands[command],
             failure: outcome === "." ? "" : words(data.failures[outcome.charCodeAt(0) - 97]),
-            attribution: to === "a" ? "abstraction" : to === "p" ? "policy" : to === "s" ? "perception" : "",
+            attribution: to === "a" ? "abstraction" : to === "p" ? "policy" : to === "s" ? "perception" : to === "r" ? "reading" : "",
             action: played.actions[index], picture: data.pictures[scene], end: played.ends[index],
             oracle: data.oracle[scene], targets: data.targets[scene],
             mask: cell.masks[command] && data.masks[scene + cell.masks[command]],
