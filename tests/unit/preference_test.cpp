@@ -86,7 +86,6 @@ TEST(Preference, LeavesOutWhatHoldsTheSameObjects) {
   EXPECT_EQ(Preference(words, {}, space).probabilities(), std::vector<double>{1});
 }
 
-
 #define EXPECT_REFUSED(call, words) EXPECT_SAYS(message_of<MethodError>([&] { call; }), words)
 
 Scenario asked_scenario() {
