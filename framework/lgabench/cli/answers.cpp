@@ -140,6 +140,7 @@ void add_answers(CLI::App& app, int& exit) {
   auto a = std::make_shared<AnswersArguments>();
   Verb verb(app, "answers", "Write a suite's questions for another program to ask, or keep the replies that it got");
   auto* suite = verb.option("suite SUITE", a->suite, "The suite whose commands the questions are about");
+  verb.below("Questions");
   auto* questions = verb.option("--questions FILE", a->questions,
                                 "Write a line of JSON for each question, with the messages for the model")
                         ->needs(suite);
