@@ -460,11 +460,12 @@ TEST(Names, AreASettingOfMethodsAloneAndNameTheRow) {
     EXPECT_EQ(cell.data.contains("reader"), cell.reading.names == "read");
   }
   EXPECT_EQ(cells.size(), 4 * methods + references);
-  EXPECT_EQ(rows["lga"], (std::set<std::string>{"lga", "lga+names=read", "lga+segments=difference",
-                                                "lga+names=read+segments=difference"}));
+  EXPECT_EQ(rows["a"],
+            (std::set<std::string>{"a", "a+names=read", "a+segments=difference", "a+names=read+segments=difference"}));
   EXPECT_EQ(rows["oracle"], std::set<std::string>{"oracle"});
 
-  const auto refusal = [&](const char* suite, const Json& json) {
+  const auto refusal = [&](const char* suite, Json json) {
+    json.update({{"methods", {"a"}}, {"engines", design.engines}, {"options", Json::object()}});
     return message_of<InputError>(
         [&] { expand(load_suite(suite), apply(JsonReader(json, "mine"), load_suite(suite).design), {}, catalogue()); });
   };
