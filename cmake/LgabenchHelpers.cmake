@@ -33,7 +33,7 @@ endfunction()
 # folder: what a method may not see, or what a later version may change.
 set(lgabench_public_headers
     core/action.hpp core/error.hpp core/feature_space.hpp core/files.hpp core/geometry.hpp core/json.hpp
-    core/language_model.hpp core/meaning.hpp core/method.hpp core/observation.hpp core/observation_perturbation.hpp core/physics_world.hpp core/random.hpp core/selection.hpp
+    core/language_model.hpp core/meaning.hpp core/method.hpp core/observation.hpp core/observation_perturbation.hpp core/perceiver.hpp core/physics_world.hpp core/random.hpp core/selection.hpp
     core/shown.hpp core/version.hpp
     plugin/descriptor.hpp plugin/fingerprint.hpp plugin/plugin.hpp
     abstraction/goal_mask.hpp abstraction/repaint.hpp abstraction/select_features.hpp

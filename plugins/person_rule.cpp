@@ -121,7 +121,10 @@ class PersonRuleMethod final : public CloningMethod {
     Shown shown;
     for (const Demonstration& one : demonstrations) {
       if (one.instruction.utterance != command.utterance) continue;
-      Standing scene = drawn::standing(placed(one.steps.at(0).observation), grammar_->space);
+      const std::vector<Placed> visible = placed(one.steps.at(0).observation);
+      const auto is_goal = [](const Placed& object) { return is_place(object.instance.object_type); };
+      if (std::none_of(visible.begin(), visible.end(), is_goal)) continue;  // rules speak of a place in view
+      Standing scene = drawn::standing(visible, grammar_->space);
       const auto instance = taken(one, services.actions);
       const auto at = std::find(scene.ids.begin(), scene.ids.end(), instance.value_or(0));
       if (at == scene.ids.end()) continue;

@@ -115,7 +115,7 @@ def persons():
         last = by_n[ns[-1]]
         lines.append([PERSONS[row], str(questions), *(f"{number(by_n[n]['success'])} [{interval(by_n[n]['success_interval'])}]" for n in ns),
                       "" if row == "person_rule" else f"{last['regret']:+.2f} [{interval(last['regret_interval'])}]"])
-    return commands("persons") + table(["row", "questions", *(f"{n} demonstrations" for n in ns), f"regret at {ns[-1]}"], lines)
+    return commands("persons") + table(["row", "questions", *(f"{n} demonstration{'' if n == 1 else 's'}" for n in ns), f"regret at {ns[-1]}"], lines)
 
 
 RULES = {"random_object": "random object in view", "largest": "largest in the picture", "first_listed": "first that the simulator lists",

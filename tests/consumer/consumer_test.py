@@ -108,7 +108,7 @@ class Package(Consumer):
     def test_every_public_header_compiles(self):
         headers = sorted(path.relative_to(self.prefix / "include") for path in self.prefix.glob("include/**/*.hpp"))
         headers.remove(pathlib.Path("lgabench/learning/torch_learner.hpp"))  # needs LibTorch; --full builds own_network with it
-        self.assertLessEqual(len(headers), 29, "what a plugin's author has to know")
+        self.assertLessEqual(len(headers), 30, "what a plugin's author has to know")
         self.assertIn("method.hpp", [header.name for header in headers])
         self.assertEqual([header for header in headers if "Private to" in (self.prefix / "include" / header).read_text()], [])
         alone = [[header] for header in headers]

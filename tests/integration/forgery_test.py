@@ -132,7 +132,7 @@ class Forgeries(Case):
         for line in lines:
             line["outcomes"] = {arm: letters if arm == arms[0] else "." * len(letters) for arm, letters in line["outcomes"].items()}
         (self.lga / "cells.jsonl").write_text("".join(map(canonical, lines)))
-        said = self.leaderboard("verify", self.lga.parent.name, "--fresh", "--cells", "8", "--by", "B. Reader", expect=1).stdout
+        said = self.leaderboard("verify", self.lga.parent.name, "--fresh", "--by", "B. Reader", expect=1).stdout
         self.assertRegex(said, rf"^DIFFERS .*: -0.\d+ \[.*\] on fresh scenes; arm (?!{arms[0]} )\w+ differs: -0")
 
     def test_people_who_are_the_truth(self):

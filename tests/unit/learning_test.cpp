@@ -353,7 +353,7 @@ TEST(Options, ThatNameNothingKnownAreNeverTakenForADefault) {
   for (const auto& [option, known] : {std::pair{"network", "text, released, plain, spot"},
                                       {"loss", "norm, squared"},
                                       {"batches", "drawn, shuffled"},
-                                      {"policy", "regression, centroid, heat_map"}}) {
+                                      {"policy", "regression, centroid, heat_map, point"}}) {
     const auto with_another = [&, name = option] {
       learn({{Picture::mask}}, demonstrations(2), 1, 0, {{name, "resnet"}});
     };

@@ -12,11 +12,11 @@
 namespace lgabench {
 namespace {
 
-void expect_size(const Observation& perceived, PictureSize picture) {
+void expect_size(const Observation& perceived, PictureSize picture, const char* by) {
   const std::size_t pixels = picture.pixels();
   if (perceived.rgb.size() != 3 * pixels || perceived.ids.size() != pixels)
-    throw MethodError(fmt::format("it returned {} bytes of rgb and {} of ids, expected {} and {}", perceived.rgb.size(),
-                                  perceived.ids.size(), 3 * pixels, pixels));
+    throw MethodError(fmt::format("{}() returned {} bytes of rgb and {} of ids, expected {} and {}", by,
+                                  perceived.rgb.size(), perceived.ids.size(), 3 * pixels, pixels));
 }
 
 // One plugin, a perturbation or a perceiver, from loading to its end.
@@ -63,7 +63,7 @@ class PerturbationHost {
     const Observation perceived = perceiver_ ? perceiver_->read(std::move(seen), space_of(reader.at("space")))
                                              : perturbed(std::move(seen), reader);
     flushed_ = flushed_ && denormals_flushed();
-    expect_size(perceived, picture_);
+    expect_size(perceived, picture_, perceiver_ ? "read" : "perceive");
     for (const Frame& frame : {protocol::ids_frame(perceived), protocol::perceived_frame(perceived)})
       channel_.send(frame.header, frame.payload);
   }
