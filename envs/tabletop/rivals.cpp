@@ -114,6 +114,9 @@ std::shared_ptr<const Persons> read_persons(const Scenario& scenario, const Json
 std::vector<SceneObject> rival_objects(const Scenario& scenario, const Task& task, const Layout& layout,
                                        const Content& content, int person, bool training, const Streams& stream) {
   constexpr int pictures = 50, tries = 200'000;
+  if (!layout.target_places.empty() || !layout.pallet)  // places for fewer objects than rivals are
+    throw InputError(
+        fmt::format("scenario \"{}\": persons: expected layout continuous, got {}", scenario.id, layout.id));
   const auto& [words, rule] = content.persons->all.at(static_cast<std::size_t>(person));
   Table table(scenario.space, task, layout, content, stream);
   RandomStream random = stream(training ? "natural" : "rivals");

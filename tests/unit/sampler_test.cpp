@@ -280,6 +280,7 @@ std::vector<std::tuple<std::string, std::string>> every_scenario_and_layout(cons
     const Scenario scenario = load_scenario(id);
     if (scenario.environment != "tabletop") continue;
     if (tabletop::content_of(*scenario.train).by_meaning) continue;  // meant_scenes_test.cpp
+    if (tabletop::content_of(*scenario.train).persons) continue;     // persons_test.cpp
     for (const std::string& layout : layouts(scenario.task)) {
       const bool too_wide = id == "q3_food" && layout == "released";  // its pan; refused, see below
       if (!too_wide) all.emplace_back(id, layout);
@@ -534,6 +535,7 @@ TEST(Sampler, RefusesWhatItCannotSample) {
   const Scenario s = load_scenario("heart");
   EXPECT_THROW(sample_scene(s, test_request("circular"), 0), InputError);
   EXPECT_THROW(sample_scene(s, test_request("cells"), -1), InputError);
+  EXPECT_THROW(sample_scene(load_scenario("persons_1_01"), test_request("cells"), 0), InputError);
   EXPECT_THROW(sample_scene(s, {"cells", "testing", "test", 0}, 0), InputError);
   EXPECT_THROW(sample_scene(s, {"cells", "test", "hard", 0}, 0), InputError);
   EXPECT_THROW(sample_scene(s, train_request(Selection{}, "cells"), 0), InputError);  // an empty Selection

@@ -246,7 +246,7 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
       cell.method.name += errors.suffix() + reading.suffix();
       cell.selection_errors = errors;
       cell.reading = reading;
-      cell.data = data_hashes(scenario, cell.answers, reading);
+      if (!reading.none()) cell.data = data_hashes(scenario, cell.answers, reading);  // reads files
       cell.train_on = method.is_reference() ? std::nullopt : design.train_on;
       cell.demonstrations = demonstrations;
       cell.training_seed = seed;
