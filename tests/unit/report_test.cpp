@@ -443,7 +443,7 @@ TEST(Run, CorruptFilesAreNamedWithTheirPlace) {
   EXPECT_SAYS(broken("episodes.jsonl", [](auto text) { return text.substr(0, text.find('\n') + 1); }),
               "episodes.jsonl: line 1: expected 20 episodes of arm \"test\", got 1");
   EXPECT_SAYS(broken("episodes.jsonl", replacing("\"attribution\":null", "\"attribution\":\"policy\"")),
-              "line 1: /attribution: expected abstraction, policy, perception on a method's failure, or null");
+              "line 1: /attribution: expected abstraction, policy, perception, reading on a method's failure, or null");
   EXPECT_SAYS(broken("episodes.jsonl", replacing("\"attribution\":null,", "")),
               "line 1: /: expected a member \"attribution\"");
   EXPECT_SAYS(broken("episodes.jsonl", replacing("\"index\":3", "\"index\":4")),

@@ -271,9 +271,8 @@ std::optional<RivalScene> draw_rivals(const std::vector<PersonRule>& rules, cons
     const auto singled_out = [&](bool placed) {
       for (std::size_t i = 0; i < scene.rules.size(); ++i)
         for (std::size_t j = 0; j < scene.things.size(); ++j)
-          if (i == j && placed && !takes_plainly(scene.rules[i], scene.things, goal, i))
-            return false;
-          else if (i != j && !scene.rules[i].place && belongs(scene.rules[i], scene.things[j]))
+          if (i == j ? placed && !takes_plainly(scene.rules[i], scene.things, goal, i)
+                     : !scene.rules[i].place && belongs(scene.rules[i], scene.things[j]))
             return false;
       return true;
     };

@@ -240,13 +240,14 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
     expect_read(suite, scenario, readings);
     for (const std::string& engine : design.engines) expect_dynamics(scenario, catalogue.find("engine", engine));
     Cell cell = unplayed_cell(suite, design, scenario, variation.answers);
+    const auto as_simulated = cell.data;
     const auto add = [&](const Competitor& method, int demonstrations, std::uint64_t seed,
                          const SelectionErrors& errors = {}, const Reading& reading = {}) {
       cell.method = method;
       cell.method.name += errors.suffix() + reading.suffix();
       cell.selection_errors = errors;
       cell.reading = reading;
-      if (!reading.none()) cell.data = data_hashes(scenario, cell.answers, reading);  // reads files
+      cell.data = reading.none() ? as_simulated : data_hashes(scenario, cell.answers, reading);
       cell.train_on = method.is_reference() ? std::nullopt : design.train_on;
       cell.demonstrations = demonstrations;
       cell.training_seed = seed;

@@ -60,7 +60,8 @@ Action pointed_at(const Observation& observation, std::uint8_t instance, const A
   const auto columns = static_cast<std::size_t>(observation.size.columns);
   for (std::size_t i = 0; i < observation.ids.size(); ++i) {
     if (observation.ids[i] != instance) continue;
-    const Vec2 pixel{static_cast<double>(i / columns), static_cast<double>(i % columns)};
+    const std::size_t row = i / columns, column = i % columns;
+    const Vec2 pixel{static_cast<double>(row), static_cast<double>(column)};
     const double away = std::hypot(pixel.x - object->row, pixel.y - object->column);
     if (away >= least) continue;
     least = away;

@@ -19,7 +19,7 @@ void add(Features& all, double value) { all.push_back(static_cast<float>(value))
 void add_quantiles(Features& all, std::vector<int>& values, int count) {
   std::sort(values.begin(), values.end());
   for (int i = 0; i < count; ++i) {
-    const double at = values.empty() ? 0 : (values.size() - 1) * (i + .5) / count;
+    const double at = values.empty() ? 0 : static_cast<double>(values.size() - 1) * (i + .5) / count;
     add(all, values.empty() ? 0 : values[static_cast<std::size_t>(std::lround(at))]);
   }
 }
@@ -187,7 +187,7 @@ std::vector<float> surface_features(const Picture& picture, std::uint8_t id) {
   for (int row = 0; row < within.rows; ++row)
     for (int column = 0; column < within.cols; ++column) {
       if (!within.at<std::uint8_t>(row, column)) continue;
-      const cv::Vec3b lab = lab_of.at<cv::Vec3b>(row, column);
+      const cv::Vec3b& lab = lab_of.at<cv::Vec3b>(row, column);
       const auto bin = [](int value) { return std::clamp((value - 128 + 80) / 20, 0, by_ab - 1); };
       colours[static_cast<std::size_t>((lab[0] * by_l / 256 * by_ab + bin(lab[1])) * by_ab + bin(lab[2]))] += 1;
       for (int c = 0; c < 3; ++c) channels[static_cast<std::size_t>(c)].push_back(lab[c]);

@@ -90,7 +90,8 @@ Observation balanced(Observation seen, const Observation& empty) {
   std::array<std::array<std::uint8_t, 256>, 3> as{};
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t value = 0; value < 256; ++value)
-      as[c][value] = static_cast<std::uint8_t>(std::min(255L, std::lround(value * usual[c] / now[c])));
+      as[c][value] =
+          static_cast<std::uint8_t>(std::min(255L, std::lround(static_cast<double>(value) * usual[c] / now[c])));
   for (std::size_t i = 0; i < seen.rgb.size(); ++i) seen.rgb[i] = as[i % 3][seen.rgb[i]];
   return seen;
 }

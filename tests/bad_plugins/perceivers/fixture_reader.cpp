@@ -43,7 +43,8 @@ class Reader : public Perceiver {
     std::set<std::uint8_t> ids(seen.ids.begin(), seen.ids.end());
     ids.erase(0);
     for (const std::uint8_t id : ids) seen.instances.push_back({id, space.object_types[0], space.textures[0], 0});
-    if (how == "changes" && ++calls_ > 3) seen.instances.at(0).texture = space.textures[static_cast<std::size_t>(calls_) % 7];
+    if (how == "changes" && ++calls_ > 3)
+      seen.instances.at(0).texture = space.textures[static_cast<std::size_t>(calls_) % 7];
     if (how == "wrong size") seen.rgb.resize(3);
     if (how == "unknown id") seen.ids[0] = 200;
     if (how == "unknown name") seen.instances.at(0).texture = "of glass";
