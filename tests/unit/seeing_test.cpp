@@ -109,7 +109,9 @@ TEST(Reader, ReadsPicturesAsTheyAreAndLosesTexturesWithTheLight) {
   EXPECT_GE(clean.types, .97 * clean.of);
   EXPECT_GE(clean.textures, .97 * clean.of);
   EXPECT_LE(right(plain, pictures, dimmer).textures, .6 * clean.of);
-  const auto whitened = [](const Observation& seen) { return seeing::balanced(dimmer(seen), empty()); };
+  const auto whitened = [](const Observation& seen) {
+    return seeing::balanced(dimmer(seen), seeing::colour_of_table(empty()));
+  };
   EXPECT_GE(right(plain, pictures, whitened).textures, .93 * clean.of);
   EXPECT_LE(right(plain, pictures, noisier).textures, .8 * clean.of);
   EXPECT_GE(right(drawn, pictures, noisier).textures, .95 * clean.of);

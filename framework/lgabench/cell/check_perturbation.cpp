@@ -176,10 +176,6 @@ class AxisCheck {
   int calls_ = 0;
 };
 
-}  // namespace
-
-namespace {
-
 // `check` of each environment to check in: its job, its part of the report's hashes.
 template <class Check>
 CheckReport in_environments(HostJob job, const CheckPhase& phase, Check check) {

@@ -94,8 +94,9 @@ class CheckedPerceiver final : public Perceiver {
       const std::string picture = hash_of(seen);
       Observation read = process_->read(std::move(seen), space);
       expect_perceived(read, space);
-      const std::string& before = answers_.emplace(picture, hash_of(read)).first->second;
-      if (before != hash_of(read)) throw MethodError("another answer than before to the same picture");
+      const std::string answer = hash_of(read);
+      if (answers_.emplace(picture, answer).first->second != answer)
+        throw MethodError("another answer than before to the same picture");
       return read;
     });
   }

@@ -32,6 +32,12 @@ using Key = std::pair<std::string, int>;  // arm, index
   throw EngineError(what);
 }
 
+Json named_instances(const Observation& observation) {
+  Json names = Json::array();
+  for (const Instance& one : observation.instances) names.push_back({one.id, one.object_type, one.texture});
+  return names;
+}
+
 }  // namespace
 
 AxesOf axes_in(const Scenario& scenario) {
@@ -42,16 +48,14 @@ AxesOf axes_in(const Scenario& scenario) {
 }
 
 std::string names_hash(const Observation& observation) {
-  Json instances = Json::array();
-  for (const Instance& one : observation.instances) instances.push_back({one.id, one.object_type, one.texture});
-  return hash_of(hash_of(bytes_of(observation.ids)) + hash_of(instances));
+  return hash_of(hash_of(bytes_of(observation.ids)) + hash_of(named_instances(observation)));
 }
 
 std::array<std::string, parts> parts_of(const PlayedScene& played, const Observation& observation,
                                         const Instruction* selected, const Instruction* told, const Observation* read) {
   const Scene& scene = played.scene;
   Json objects = to_json(scene).at("objects"), control = to_json(played.control), physics = Json::array(),
-       instances = Json::array(), pixels = Json::array();
+       pixels = Json::array();
   for (const char* own : {"arm", "command"}) control.erase(own);  // a scene is the control's whoever asks, and how
   for (Json& object : objects) object.erase("scale");             // of physics
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
@@ -61,7 +65,6 @@ std::array<std::string, parts> parts_of(const PlayedScene& played, const Observa
     if (const auto& of = played.bodies[i].physics)
       physics.back().push_back({of->mass_kg, of->friction, size_json(of->high_m - of->low_m)});
   }
-  for (const Instance& one : observation.instances) instances.push_back({one.id, one.object_type, one.texture});
   const Observation& given = read ? *read : observation;
   for (const Instance& one : given.instances) pixels.push_back(one.pixels);
   std::array<std::string, parts> hashes;
@@ -70,7 +73,7 @@ std::array<std::string, parts> parts_of(const PlayedScene& played, const Observa
   of(EpisodePart::physics) = hash_of(Json{{"bodies", physics}, {"parameters", scene.parameters}});
   of(EpisodePart::rgb) = hash_of(bytes_of(observation.rgb));
   of(EpisodePart::ids) = hash_of(bytes_of(observation.ids));
-  of(EpisodePart::instances) = hash_of(instances);
+  of(EpisodePart::instances) = hash_of(named_instances(observation));
   of(EpisodePart::control) = hash_of(control);
   std::string input = of(EpisodePart::rgb) + of(EpisodePart::ids) + of(EpisodePart::instances) + canonical(pixels);
   if (read) input += names_hash(*read);

@@ -45,13 +45,12 @@ CloningOptions read_cloning_options(const Json& json) {
   read_if_there(options, "instances", {{"all", Instances::all}, {"first", Instances::first}}, read.instances);
   read_if_there(options, "mask", {{"binary", false}, {"signed", true}}, read.signed_mask);
   read.points = options.has("policy") && options.at("policy").json() == "point";
-  if (!read.points)
-    read_if_there(options, "policy",
-                  {{"regression", PolicyKind::regression},
-                   {"centroid", PolicyKind::centroid},
-                   {"heat_map", PolicyKind::heat_map},
-                   {"point", PolicyKind::regression}},
-                  read.policy);
+  read_if_there(options, "policy",
+                {{"regression", PolicyKind::regression},
+                 {"centroid", PolicyKind::centroid},
+                 {"heat_map", PolicyKind::heat_map},
+                 {"point", PolicyKind::regression}},
+                read.policy);
   return read;
 }
 

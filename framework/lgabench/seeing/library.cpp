@@ -1,4 +1,5 @@
 // What the library shows of itself (abstraction/reading.hpp).
+#include <array>
 #include <utility>
 
 #include <lgabench/abstraction/reading.hpp>
@@ -11,17 +12,17 @@ namespace {
 class ShippedReader final : public Perceiver {
  public:
   ShippedReader(const fs::path& file, bool balances, const Observation& empty, const FeatureSpace& space)
-      : reader_(Model::of(read_file(file)), space), balances_(balances), empty_(empty) {}
+      : reader_(Model::of(read_file(file)), space), balances_(balances), usual_(colour_of_table(empty)) {}
 
   Observation read(Observation seen, const FeatureSpace& /*its own*/) override {
-    seen.instances = reader_.names(balances_ ? balanced(seen, empty_) : seen);
+    seen.instances = reader_.names(balances_ ? balanced(seen, usual_) : seen);
     return seen;
   }
 
  private:
   Reader reader_;
   bool balances_;
-  Observation empty_;
+  std::array<double, 3> usual_;  // the empty place's colour
 };
 
 }  // namespace

@@ -35,24 +35,6 @@ std::vector<bool> known(const Forest& forest, const std::vector<std::string>& na
   return all;
 }
 
-// Over what is no segment.
-std::array<double, 3> medians(const Observation& seen) {
-  std::array<std::array<int, 256>, 3> counts{};
-  int all = 0;
-  for (std::size_t i = 0; i < seen.ids.size(); ++i) {
-    if (seen.ids[i]) continue;
-    ++all;
-    for (std::size_t c = 0; c < 3; ++c) ++counts[c][seen.rgb[3 * i + c]];
-  }
-  std::array<double, 3> medians{};
-  for (std::size_t c = 0; c < 3; ++c) {
-    std::size_t value = 0;
-    for (int sum = counts[c][0]; value < 255 && 2 * sum < all;) sum += counts[c][++value];
-    medians[c] = std::max(1., static_cast<double>(value));
-  }
-  return medians;
-}
-
 // Of each pixel: how far its colour is from the empty place's, in the light or in an object's shadow.
 cv::Mat differences(const Observation& seen, const Observation& empty) {
   cv::Mat far(seen.size.rows, seen.size.columns, CV_8U);
@@ -85,8 +67,25 @@ Model Model::of(std::string_view bytes) {
   return model;
 }
 
-Observation balanced(Observation seen, const Observation& empty) {
-  const std::array<double, 3> now = medians(seen), usual = medians(empty);
+std::array<double, 3> colour_of_table(const Observation& seen) {
+  std::array<std::array<int, 256>, 3> counts{};
+  int all = 0;
+  for (std::size_t i = 0; i < seen.ids.size(); ++i) {
+    if (seen.ids[i]) continue;
+    ++all;
+    for (std::size_t c = 0; c < 3; ++c) ++counts[c][seen.rgb[3 * i + c]];
+  }
+  std::array<double, 3> medians{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    std::size_t value = 0;
+    for (int sum = counts[c][0]; value < 255 && 2 * sum < all;) sum += counts[c][++value];
+    medians[c] = std::max(1., static_cast<double>(value));
+  }
+  return medians;
+}
+
+Observation balanced(Observation seen, const std::array<double, 3>& usual) {
+  const std::array<double, 3> now = colour_of_table(seen);
   std::array<std::array<std::uint8_t, 256>, 3> as{};
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t value = 0; value < 256; ++value)
@@ -101,7 +100,7 @@ Observation segments_by_difference(Observation seen, const Observation& empty, b
   seen.instances.clear();
   seen.shadows.clear();
   std::fill(seen.ids.begin(), seen.ids.end(), std::uint8_t{0});
-  cv::Mat far = differences(balances ? balanced(seen, empty) : seen, empty);
+  cv::Mat far = differences(balances ? balanced(seen, colour_of_table(empty)) : seen, empty);
   cv::Mat things = far > nearest, labels, statistics, middles;
   cv::morphologyEx(things, things, cv::MORPH_CLOSE, cv::Mat::ones(3, 3, CV_8U));
   const int count = cv::connectedComponentsWithStats(things, labels, statistics, middles, 8, CV_32S);

@@ -1,6 +1,7 @@
 // Reads what a picture shows: segments by difference from the empty place, their object types and textures by forests
 // of trees that were grown on drawn pictures.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -21,9 +22,12 @@ struct Model {
   static Model of(std::string_view bytes);
 };
 
-/// The picture with each colour divided by what the light made of the empty place's: medians over all that is no
-/// segment. Ids and names stay.
-Observation balanced(Observation seen, const Observation& empty);
+/// Medians of red, green and blue over all that belongs to no segment, each at least 1.
+std::array<double, 3> colour_of_table(const Observation& seen);
+
+/// The picture with each colour divided by what the light made of the empty place's, which is `usual`. Ids and names
+/// stay.
+Observation balanced(Observation seen, const std::array<double, 3>& usual);
 
 /// Fills `ids`: what differs from the empty place and is not its shadow, each connected piece one segment. `random`
 /// permutes the ids. `balances`: as balanced(), first. Names and shadows are left empty.
