@@ -1,5 +1,6 @@
 // The reader of names: what it reads from pictures, what light and noise do to it, and that its files are checked.
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <set>
@@ -90,7 +91,7 @@ Right right(const seeing::Reader& by, const std::vector<Observation>& pictures, 
 }
 
 Observation dimmer(Observation seen) {
-  for (std::uint8_t& value : seen.rgb) value = static_cast<std::uint8_t>(.6 * value + .5);
+  for (std::uint8_t& value : seen.rgb) value = static_cast<std::uint8_t>(std::lround(.6 * value));
   return seen;
 }
 
