@@ -1,5 +1,5 @@
-// One training step of policy=heat_map: a batch of sixteen pictures forward and back, and Adam. Its convolutions skip
-// nothing, so what a step costs does not depend on the pictures.
+// One training step of policy=heat_map: a batch of sixteen pictures forward and back, and Adam. Its convolutions copy
+// what an empty patch gives, so the pictures are masks as a policy sees them: one object, of about 7 x 7 cells.
 #include <benchmark/benchmark.h>
 #include <torch/torch.h>
 
@@ -14,8 +14,8 @@
 namespace lgabench {
 namespace {
 
-constexpr int batch = 16, planes = 1, features = 16;
-constexpr PictureSize padded = HeatMapNetwork::padded;
+constexpr int batch = 16, planes = 2, features = 16;
+constexpr PictureSize grid = HeatMapNetwork::grid, padded = HeatMapNetwork::padded;
 
 // A mask's pictures, one after the other, and a cell of each that is to be found.
 struct Pictures {
@@ -27,9 +27,16 @@ Pictures pictures() {
   RandomStream random("benchmarks/heat_map");
   Pictures all;
   for (int i = 0; i < batch; ++i) {
-    for (std::size_t k = 0; k < padded.pixels() * planes; ++k)
-      all.numbers.push_back(random.uniform() < .05 ? 1.f : 0.f);
-    all.wanted.push_back(random.below(HeatMapNetwork::cells));
+    constexpr int object = 7, border = HeatMapNetwork::border;
+    const auto row = static_cast<int>(random.below(grid.rows - object + 1)),
+               column = static_cast<int>(random.below(grid.columns - object + 1));
+    for (int y = 0; y < padded.rows; ++y)
+      for (int x = 0; x < padded.columns; ++x) {
+        const int down = y - border - row, right = x - border - column;
+        all.numbers.push_back(down >= 0 && down < object && right >= 0 && right < object ? 1.f : 0.f);
+        all.numbers.push_back(0);  // nothing is to be avoided
+      }
+    all.wanted.push_back((row + object / 2) * grid.columns + column + object / 2);
   }
   return all;
 }

@@ -48,6 +48,43 @@ void train(HeatMap& policy, const Samples& samples) {
 const SampleShape one_mask{{{native_size, 1}}, false, tabletop::two_poses()},
     colours{{{HeatMap::rgb_size, 3}}, false, tabletop::two_poses()};
 
+// A picture that is nowhere empty, but by numbers that no sum of these notices.
+TEST(HeatMapNetwork, CopiesWhatAnEmptyPatchGivesToTheBit) {
+  constexpr PictureSize padded = HeatMapNetwork::padded;
+  HeatMapNetwork network(Field(tabletop::two_poses()), 2, false, 1, 1, *available_kernels().front());
+  RandomStream random("empty patches");
+  std::vector<float> values = network.parameters().values();
+  for (float& value : values) value += static_cast<float>(.1 * random.gaussian());
+  network.parameters().set(values);
+  struct Object {
+    int top, left, height, width;
+  };
+  const std::vector<float> wanted(HeatMapNetwork::cells, 1.f / HeatMapNetwork::cells);
+  for (const Object& one : {Object{15, 30, 7, 7}, {4, 4, 1, 1}, {35, 67, 1, 1}, {10, 0, 3, 72}, {0, 0, 0, 0}}) {
+    std::vector<float> empty(padded.pixels() * 2), full(empty.size(), 1e-30f);
+    for (int y = one.top; y < one.top + one.height; ++y)
+      for (int x = one.left; x < one.left + one.width; ++x) {
+        const auto at = static_cast<std::size_t>(y * padded.columns + x) * 2;
+        empty[at] = full[at] = static_cast<float>(random.uniform());
+      }
+    const auto learned = [&](const std::vector<float>& planes) {
+      network.clear_gradients();
+      const std::vector<float> map = network.map(planes.data(), nullptr, nullptr);
+      network.teach(wanted, {}, 0, 1);
+      return std::pair(map, network.parameters().gradients());
+    };
+    const auto [map, gradients] = learned(empty);
+    const auto [full_map, full_gradients] = learned(full);
+    EXPECT_EQ(map, full_map);
+    for (std::size_t i = 0; i < gradients.size(); ++i) {
+      if (std::abs(full_gradients[i]) < 1e-20f)
+        EXPECT_EQ(gradients[i], 0) << i;
+      else
+        EXPECT_EQ(gradients[i], full_gradients[i]) << i;
+    }
+  }
+}
+
 // Two demonstrations push one way, two the other, so that there are two groups.
 TEST(HeatMap, HasTheGradientsOfFiniteDifferences) {
   Samples samples({{{native_size, 1}, {HeatMap::rgb_size, 3}}, true, tabletop::two_poses()}, 4);

@@ -74,8 +74,8 @@ bool FirstConvolution::find(const std::vector<const float*>& pictures, const flo
 
 void FirstConvolution::forward(const float* weights, const float* bias, bool relu, float* out) {
   static const float no_bias[most_channels] = {};
-  kernels_.forward(layer_, usual_, weights, bias, whole_, false);
-  kernels_.forward(on_patches(), patches_, weights, no_bias, numbers_, false);
+  kernels_.forward(layer_, usual_, weights, bias, whole_, false, nullptr);
+  kernels_.forward(on_patches(), patches_, weights, no_bias, numbers_, false, nullptr);
   for (int row = 0; row < rows_; ++row)
     std::copy_n(static_cast<const float*>(whole_), layer_.outputs(), out + row * layer_.outputs());
   const float* from = numbers_;
@@ -90,9 +90,9 @@ void FirstConvolution::weight_gradient(const float* gradient, float* weight_grad
   float* to = numbers_;
   for (const int place : places_) to = std::copy_n(gradient + place * channels, channels, to);
   const float* const patches = patches_;
-  kernels_.weight_gradient(on_patches(), &patches, numbers_, weight_gradient, 1);
+  kernels_.weight_gradient(on_patches(), &patches, numbers_, weight_gradient, 1, nullptr);
   kernels_.sum_rows(gradient, whole_, rows_, layer_.outputs());
-  kernels_.weight_gradient(layer_, &usual_, whole_, usual_gradient_, 1);
+  kernels_.weight_gradient(layer_, &usual_, whole_, usual_gradient_, 1, nullptr);
   for (int i = 0; i < layer_.weights(); ++i) weight_gradient[i] += usual_gradient_[i];
 }
 

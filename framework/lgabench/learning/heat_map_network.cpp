@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <lgabench/learning/samples.hpp>
@@ -21,8 +22,10 @@ std::vector<std::size_t> places_from(std::size_t first, int count) {
 void softmax(std::vector<float>& values) {
   const double highest = *std::max_element(values.begin(), values.end());
   double sum = 0;
+  float before = std::numeric_limits<float>::quiet_NaN(), power = 0;  // most values of a mask's map are the same
   for (float& value : values) {
-    value = static_cast<float>(std::exp(value - highest));
+    if (value != before) power = static_cast<float>(std::exp((before = value) - highest));
+    value = power;
     sum += value;
   }
   for (float& value : values) value = static_cast<float>(value / sum);
@@ -51,15 +54,17 @@ HeatMapNetwork::HeatMapNetwork(const Field& field, int planes, bool text, std::s
   score_biases_ = zeros(static_cast<int>(groups));
   parameters_.finish();
   first_bias_ = Numbers(features);
+  rows_shown_.resize(size(padded.rows));
   scratch_ = Numbers(size(std::max(convolutions_[0].layer.weights(), convolutions_[1].layer.weights())));
 }
 
 void HeatMapNetwork::add_convolution(PictureSize of_input, int channels, int kernel) {
   const Layer layer{of_input.rows, of_input.columns, channels, kernel, 1, features};
   const double bound = std::sqrt(6. / (kernel * layer.segment()));
-  Convolution& c = convolutions_.emplace_back(
-      Convolution{layer, parameters_.take(layer.weights()), parameters_.take(features), Numbers(size(layer.outputs())),
-                  Numbers(size(layer.outputs())), Numbers(size(layer.weights()))});
+  Convolution& c = convolutions_.emplace_back(Convolution{
+      layer, parameters_.take(layer.weights()), parameters_.take(features), Numbers(size(layer.outputs())),
+      Numbers(size(layer.outputs())), Numbers(size(layer.weights())), Numbers(size(kernel * layer.segment())),
+      Numbers(features), std::vector<Span>(size(layer.out_rows()))});
   parameters_.uniform(places_from(c.weights, layer.weights()), -bound, bound);
   parameters_.uniform(places_from(c.bias, features), 0, 0);
 }
@@ -70,16 +75,73 @@ const std::vector<float>& HeatMapNetwork::map(const float* planes, const float* 
   std::copy_n(parameters_[convolutions_[0].bias], features, static_cast<float*>(first_bias_));
   for (int i = 0; text && i < text_size; ++i)
     for (int k = 0; k < features; ++k) first_bias_[k] += text[i] * parameters_[text_][i * features + k];
-  for (std::size_t i = 0; i < convolutions_.size(); ++i) {
-    Convolution& c = convolutions_[i];
-    kernels_.forward(c.layer, input(i), parameters_[c.weights], i == 0 ? first_bias_ : parameters_[c.bias], c.outputs,
-                     true);
+  find_seen();
+  for (std::size_t i = 0; i < convolutions_.size(); ++i) convolve(i);
+  const Convolution& last = convolutions_.back();
+  const auto heat = [&](const float* feature, float of_prior) {
+    return std::inner_product(feature, feature + features, parameters_[heat_], of_prior);
+  };
+  float empty_prior = prior ? prior[0] : 0.f, empty_heat = heat(last.of_empty, empty_prior);
+  const float* feature = last.outputs;
+  for (int cell = 0; cell < cells; ++cell, feature += features) {
+    const Span seen = last.seen[size(cell / grid.columns)];
+    const float of_prior = prior ? prior[cell] : 0.f;
+    const int column = cell % grid.columns;
+    const bool empty = column < seen.begin || column >= seen.end;
+    map_[size(cell)] = empty && of_prior == empty_prior ? empty_heat : heat(feature, of_prior);
   }
-  const float* feature = convolutions_.back().outputs;
-  for (int cell = 0; cell < cells; ++cell, feature += features)
-    map_[size(cell)] = std::inner_product(feature, feature + features, parameters_[heat_], prior ? prior[cell] : 0.f);
   softmax(map_);
   return map_;
+}
+
+// The columns of each row whose patch is not all 0: what one span of a row holds.
+void HeatMapNetwork::find_seen() {
+  const Layer& first = convolutions_[0].layer;
+  const int line = first.columns * first.channels;
+  for (int y = 0; y < first.rows; ++y) {
+    const float* const begin = planes_ + y * line;
+    const auto shows = [](float value) { return value != 0; };
+    const int left = static_cast<int>(std::find_if(begin, begin + line, shows) - begin);
+    int right = line;
+    while (right > left && !shows(begin[right - 1])) --right;
+    rows_shown_[size(y)] = {left / first.channels, (right + first.channels - 1) / first.channels};
+  }
+  const std::vector<Span>* rows = &rows_shown_;
+  for (Convolution& c : convolutions_) {
+    const int columns = c.layer.out_columns();
+    for (int y = 0; y < c.layer.out_rows(); ++y) {
+      Span all{columns, 0};
+      for (int k = 0; k < c.layer.kernel; ++k) {
+        const auto [begin, end] = (*rows)[size(y + k)];
+        if (begin < end) all = {std::min(all.begin, begin - c.layer.kernel + 1), std::max(all.end, end)};
+      }
+      c.seen[size(y)] = all.begin < all.end ? Span{std::max(all.begin, 0), std::min(all.end, columns)} : Span{0, 0};
+    }
+    rows = &c.seen;
+  }
+}
+
+// What a patch of nothing gives is computed once, and copied.
+void HeatMapNetwork::convolve(std::size_t i) {
+  Convolution& c = convolutions_[i];
+  const Layer& l = c.layer;
+  const float* const bias = i == 0 ? first_bias_ : parameters_[c.bias];
+  if (i > 0)
+    for (int k = 0; k < l.kernel * l.kernel; ++k)
+      std::copy_n(static_cast<const float*>(convolutions_[i - 1].of_empty), features, c.empty_patch + k * features);
+  kernels_.forward({l.kernel, l.kernel, l.channels, l.kernel, 1, features}, c.empty_patch, parameters_[c.weights], bias,
+                   c.of_empty, true, nullptr);
+  kernels_.forward(l, input(i), parameters_[c.weights], bias, c.outputs, true, c.seen.data());
+  float* to = c.outputs;
+  const auto fill = [&](int count) {
+    for (int column = 0; column < count; ++column, to += features)
+      std::copy_n(static_cast<const float*>(c.of_empty), features, to);
+  };
+  for (const auto [begin, end] : c.seen) {
+    fill(begin);
+    to += (end - begin) * features;
+    fill(l.out_columns() - end);
+  }
 }
 
 const std::vector<float>& HeatMapNetwork::groups(Vec2 taken_m) {
@@ -120,7 +182,8 @@ double HeatMapNetwork::teach(const std::vector<float>& wanted, Vec2 taken_m, std
   double loss = 0;
   Convolution& last = convolutions_.back();
   const float* feature = last.outputs;
-  float* gradient = last.gradients;
+  const float* const heat = parameters_[heat_];
+  float *const of_weights = parameters_.gradient(heat_), *gradient = last.gradients;
   for (std::size_t cell = 0; cell < map_.size(); ++cell, feature += features, gradient += features) {
     if (wanted[cell] > 0) loss -= wanted[cell] * log_of(map_[cell]);
     double away = map_[cell] - wanted[cell];
@@ -130,8 +193,8 @@ double HeatMapNetwork::teach(const std::vector<float>& wanted, Vec2 taken_m, std
     }
     const auto of_heat = static_cast<float>(weight * away);
     for (int k = 0; k < features; ++k) {
-      parameters_.gradient(heat_)[k] += of_heat * feature[k];
-      gradient[k] = of_heat * parameters_[heat_][k];
+      of_weights[k] += of_heat * feature[k];
+      gradient[k] = of_heat * heat[k];
     }
   }
   if (groups_.size() > 1) loss += teach_groups(taken_m, group, weight);
@@ -170,7 +233,8 @@ void HeatMapNetwork::backward() {
     Convolution& c = convolutions_[i];
     kernels_.relu_gradient(c.outputs, c.gradients, size(c.layer.outputs()));
     const float* const in = input(i);
-    kernels_.weight_gradient(c.layer, &in, c.gradients, scratch_, 1);
+    // A product with 0 adds nothing.
+    kernels_.weight_gradient(c.layer, &in, c.gradients, scratch_, 1, i == 0 ? c.seen.data() : nullptr);
     float* const weights = parameters_.gradient(c.weights);
     for (int k = 0; k < c.layer.weights(); ++k) weights[k] += scratch_[k];
     kernels_.sum_rows(c.gradients, scratch_, c.layer.out_rows() * c.layer.out_columns(), features);

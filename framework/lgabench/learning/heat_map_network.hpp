@@ -50,6 +50,8 @@ class HeatMapNetwork {
     Layer layer;
     std::size_t weights, bias;
     Numbers outputs, gradients, transposed;
+    Numbers empty_patch, of_empty;  // a patch of the input where the picture is empty, and its outputs
+    std::vector<Span> seen{};       // of each row of outputs: where the picture is not empty
   };
   struct Centroid {
     double x, y, mass;  // from the taken point, in units of .1 m
@@ -57,6 +59,8 @@ class HeatMapNetwork {
 
   void add_convolution(PictureSize size, int channels, int kernel);
   const float* input(std::size_t i) const { return i == 0 ? planes_ : convolutions_[i - 1].outputs; }
+  void find_seen();
+  void convolve(std::size_t i);
   double teach_groups(Vec2 taken_m, std::size_t group, double weight);
   void backward();
 
@@ -71,6 +75,7 @@ class HeatMapNetwork {
   std::vector<float> map_, groups_;
   std::vector<Centroid> centroids_;
   Numbers first_bias_, scratch_;
+  std::vector<Span> rows_shown_;  // of each row of the planes: what is not 0
 };
 
 }  // namespace lgabench

@@ -20,11 +20,14 @@ struct AdamCoefficients {
 /// with 16 out channels at least; for input_gradient(), one row of its kernel is a multiple of 16 numbers.
 struct Kernels {
   const char* name;  // "avx512", "avx2" or "portable"
-  /// out = in * weights + bias of one picture, its negative numbers replaced by 0 if `relu`.
-  void (*forward)(const Layer& layer, const float* in, const float* weights, const float* bias, float* out, bool relu);
-  /// d loss / d weights, summed over pictures, whose `gradient`s (d loss / d out) lie one after the other.
+  /// out = in * weights + bias of one picture, its negative numbers replaced by 0 if `relu`; where `spans` is not null,
+  /// of these columns of each row of `out` alone.
+  void (*forward)(const Layer& layer, const float* in, const float* weights, const float* bias, float* out, bool relu,
+                  const Span* spans);
+  /// d loss / d weights, summed over pictures, whose `gradient`s (d loss / d out) lie one after the other; where
+  /// `spans` is not null, over these columns of each row of the gradient alone.
   void (*weight_gradient)(const Layer& layer, const float* const* in, const float* gradient, float* weight_gradient,
-                          int pictures);
+                          int pictures, const Span* spans);
   /// Adds d loss / d in of one picture; `transposed` weights are kernel x out_channels x (kernel x channels).
   void (*input_gradient)(const Layer& layer, const float* gradient, const float* transposed, float* in_gradient);
   /// Zeroes the gradient where `out` was cut off at 0.

@@ -69,12 +69,15 @@ LGABENCH_INLINE inline void for_vectors(int count, const Use& use) {
 const float* row(const Layer& l, const float* in, int y) { return in + y * l.columns * l.channels; }
 int step_of(const Layer& l) { return l.stride * l.channels; }  // from a position's numbers to the next one's
 
-void forward(const Layer& l, const float* in, const float* weights, const float* bias, float* out, bool relu) {
+void forward(const Layer& l, const float* in, const float* weights, const float* bias, float* out, bool relu,
+             const Span* spans) {
   const int width = l.out_columns(), segment = l.segment(), step = step_of(l);
-  for (int y = 0; y < l.out_rows(); ++y)
+  for (int y = 0; y < l.out_rows(); ++y) {
+    const Span span = spans ? spans[y] : Span{0, width};
     for_vectors(l.out_channels, [&](auto vectors, int channel) LGABENCH_INLINE {
-      for_tiles(width, [&](auto rows, int first) LGABENCH_INLINE {
+      for_tiles(span.end - span.begin, [&](auto rows, int tile) LGABENCH_INLINE {
         constexpr int n = decltype(rows)::value, m = decltype(vectors)::value;
+        const int first = span.begin + tile;
         Vector sum[n][m];
         for (int r = 0; r < n; ++r)
           for (int v = 0; v < m; ++v) sum[r][v] = load(bias + channel + v * lanes);
@@ -90,10 +93,11 @@ void forward(const Layer& l, const float* in, const float* weights, const float*
           }
       });
     });
+  }
 }
 
 void weight_gradient(const Layer& l, const float* const* in, const float* gradient, float* weight_gradient,
-                     int pictures) {
+                     int pictures, const Span* spans) {
   const int width = l.out_columns(), segment = l.segment(), step = step_of(l);
   for (int k = 0; k < l.kernel; ++k)
     for_vectors(l.out_channels, [&](auto vectors, int channel) LGABENCH_INLINE {
@@ -102,9 +106,11 @@ void weight_gradient(const Layer& l, const float* const* in, const float* gradie
         Vector sum[n][m] = {};
         const float* right = gradient + channel;
         for (int picture = 0; picture < pictures; ++picture)
-          for (int y = 0; y < l.out_rows(); ++y, right += width * l.out_channels)
-            multiply_add<n, m>(sum, row(l, in[picture], y * l.stride + k) + first, 1, step, right, l.out_channels,
-                               width);
+          for (int y = 0; y < l.out_rows(); ++y, right += width * l.out_channels) {
+            const Span span = spans ? spans[y] : Span{0, width};
+            multiply_add<n, m>(sum, row(l, in[picture], y * l.stride + k) + first + span.begin * step, 1, step,
+                               right + span.begin * l.out_channels, l.out_channels, span.end - span.begin);
+          }
         for (int r = 0; r < n; ++r)
           for (int v = 0; v < m; ++v)
             store(weight_gradient + (k * segment + first + r) * l.out_channels + channel + v * lanes, sum[r][v]);

@@ -18,6 +18,11 @@ struct Layer {
   constexpr int outputs() const { return out_rows() * out_columns() * out_channels; }  ///< of one picture
 };
 
+/// Columns begin .. end of one row.
+struct Span {
+  int begin, end;
+};
+
 /// Outputs of a linear layer are padded with zeros to whole vectors: 100 features to 112, 1000 to 1008, the numbers of
 /// an action to 16.
 constexpr int hidden_features = 100, padded_hidden = 112, wide_features = 1000, padded_wide = 1008, padded_action = 16;

@@ -38,11 +38,11 @@ Layer Linear::on(int rows) const {
 }
 
 void Linear::forward(const float* in, const float* bias, float* out, int rows) const {
-  kernels_.forward(on(rows), in, parameters_[weights_], bias, out, false);
+  kernels_.forward(on(rows), in, parameters_[weights_], bias, out, false, nullptr);
 }
 
 void Linear::backward(const float* in, const float* gradient, float* in_gradient, int rows) {
-  kernels_.weight_gradient(on(rows), &in, gradient, parameters_.gradient(weights_), 1);
+  kernels_.weight_gradient(on(rows), &in, gradient, parameters_.gradient(weights_), 1, nullptr);
   if (!in_gradient) return;
   transpose_weights(layer_, parameters_[weights_], transposed_);
   std::fill_n(in_gradient, rows * layer_.channels, 0.f);

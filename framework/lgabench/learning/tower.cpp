@@ -75,7 +75,7 @@ void Tower::convolve(std::size_t i, const std::vector<const float*>& pictures, f
   const float* const weights = parameters_[c.weights];
   if (i == 0 && mostly_usual_) return first_->forward(weights, parameters_[c.bias], relu, out);
   for (int row = 0; row < rows_; ++row)
-    kernels_.forward(l, input(i, pictures, row), weights, parameters_[c.bias], out + row * l.outputs(), relu);
+    kernels_.forward(l, input(i, pictures, row), weights, parameters_[c.bias], out + row * l.outputs(), relu, nullptr);
 }
 
 void Tower::backward(const std::vector<const float*>& pictures) {
@@ -112,7 +112,7 @@ void Tower::backward(std::size_t i, const std::vector<const float*>& pictures) {
     first_->weight_gradient(c.gradients, weight_gradient);
   } else {
     for (int row = 0; row < rows_; ++row) in_[size(row)] = input(i, pictures, row);
-    kernels_.weight_gradient(l, in_.data(), c.gradients, weight_gradient, rows_);
+    kernels_.weight_gradient(l, in_.data(), c.gradients, weight_gradient, rows_, nullptr);
   }
 }
 
