@@ -195,13 +195,17 @@ TEST_F(Preferred, IsWhatExplainsTheDemonstrationsBest) {
   EXPECT_EQ(preferred(of_another_command, 0).target, words);
 }
 
-TEST_F(Preferred, ShowsAPersonTheFirstObjectOnWhichTheLikeliestTwoDiffer) {
+TEST_F(Preferred, ShowsAPersonTheObjectOfWhichItIsLeastCertain) {
   const Demonstration among_red = shown(row_of({{"pear", "red"}, {"apple", "red"}, {"banana", "red"}}), 1.5, 0);
   EXPECT_EQ(preferred({among_red}, 3).target, hypotheses[0].meaning);
   EXPECT_EQ(person_.asked, std::vector<std::string>{"banana, red"}) << "and nothing else in view tells more";
   person_.asked.clear();
   preferred({shown(row_of({{"apple", "red"}, {"pear", "red"}}), .5, 0)}, 1);
   EXPECT_TRUE(person_.asked.empty()) << "nothing in view tells them apart";
+
+  model_.known[0].weight = 3;  // apples 3 : what is red 1 : the words 2 / 2, once a red apple was taken
+  preferred({shown(row_of({{"apple", "red"}, {"apple", "blue"}, {"banana", "red"}}), .5, 0)}, 1);
+  EXPECT_EQ(person_.asked, std::vector<std::string>{"banana, red"}) << "not what the likeliest two differ on first";
 }
 
 TEST_F(Preferred, StaysWhatTheWordsSayWhereNothingTellsMore) {

@@ -37,15 +37,23 @@ bool can_be_taken(const Instance& instance) { return instance.pixels > 0 && !is_
 
 using Pairs = std::set<std::pair<std::string, std::string>>;  // of types and textures
 
-// The first visible object that one of the two holds and the other does not, beside those.
-std::optional<Instance> telling_object(const Meaning& a, const Meaning& b, const Pairs& but,
-                                       const std::vector<const Demonstration*>& shown) {
+// The visible object, beside those, of which it is least certain whether the person takes it; the first of equals.
+std::optional<Instance> uncertain_object(const Preference& preference, const Pairs& but,
+                                         const std::vector<const Demonstration*>& shown) {
+  constexpr double least = .01;  // what is known needs no question
+  const std::vector<double> probabilities = preference.probabilities();
+  std::optional<Instance> best;
+  double most = least;
   for (const Demonstration* one : shown)
-    for (const Instance& instance : one->steps.at(0).observation.instances)
-      if (can_be_taken(instance) && but.count({instance.object_type, instance.texture}) == 0 &&
-          a.belongs(instance.object_type, instance.texture) != b.belongs(instance.object_type, instance.texture))
-        return instance;
-  return std::nullopt;
+    for (const Instance& instance : one->steps.at(0).observation.instances) {
+      if (!can_be_taken(instance) || but.count({instance.object_type, instance.texture}) > 0) continue;
+      double yes = 0;
+      for (std::size_t i = 0; i < probabilities.size(); ++i)
+        if (preference.candidates()[i].meaning.belongs(instance.object_type, instance.texture)) yes += probabilities[i];
+      constexpr double alike = 1e-9;
+      if (const double either = std::min(yes, 1 - yes); either > most + alike) most = either, best = instance;
+    }
+  return best;
 }
 
 void log(const Command& command, const Preference& preference) {
@@ -141,12 +149,9 @@ Selection preferred(const Command& command, const Selection& selected, const Fea
   Preference preference(selected.target, hypotheses, space, asking.unlisted, asking.share);
   for (const Demonstration* one : shown)
     if (const auto instance = taken(*one, services.actions)) preference.took(one->steps.at(0).observation, *instance);
-  const auto likeliest = [&preference](std::size_t place) {
-    return preference.candidates()[preference.ranked()[place]].meaning;
-  };
   Pairs asked;
-  for (int i = 0; i < asking.questions && preference.candidates().size() > 1; ++i) {
-    const auto object = telling_object(likeliest(0), likeliest(1), asked, shown);
+  for (int i = 0; i < asking.questions; ++i) {
+    const auto object = uncertain_object(preference, asked, shown);
     if (!object) break;
     asked.emplace(object->object_type, object->texture);
     const bool accepts = services.human.accepts(command, object->object_type, object->texture);
@@ -156,7 +161,7 @@ Selection preferred(const Command& command, const Selection& selected, const Fea
   }
   log(command, preference);
   Selection revised = selected;
-  revised.target = likeliest(0);
+  revised.target = preference.candidates()[preference.ranked().front()].meaning;
   return revised;
 }
 

@@ -45,8 +45,8 @@ struct Asking {
 
 /// plga: the Selection with the target that explains best what was taken in the command's demonstrations; the Selection
 /// itself where their targets are not the person's (Services::shows_truth) or no hypotheses are known, which the log
-/// says. At each question the person is shown the first visible object of the demonstrations, shown before to
-/// nobody, on which the two likeliest candidates differ, if there is one.
+/// says. At each question the person is shown that visible object of the demonstrations of which it is least certain
+/// whether they take it (maximum entropy sampling), until all are certain to 1 in 100. No look is asked about twice.
 Selection preferred(const Command& command, const Selection& selected, const FeatureSpace& space,
                     const std::vector<Demonstration>& demonstrations, Services& services, const Asking& asking);
 
