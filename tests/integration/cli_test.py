@@ -150,6 +150,10 @@ class Lists(Case):
         self.assertIn("  heart ", said)
         suites = self.call("list", "suites", "--short").stdout.splitlines()
         self.assertEqual([line.split()[0] for line in suites[1:]], self.call("list", "suites").stdout.split())
+        self.assertRegex(self.call("list").stdout, r"\nscenarios\n  \d+: `lgabench list scenarios --short` has their commands\n")
+        (self.dir / "broken.json").write_text("{")
+        self.assertEqual(self.call("list", "--scenario-path", ".").stderr, "", "none was read")
+        self.assertIn("broken.json", self.call("list", "scenarios", "--short", "--scenario-path", ".", expect=2).stderr)
         self.assertIn("--short: expected no --of", self.call("list", "layouts", "--short", expect=2).stderr)
 
 

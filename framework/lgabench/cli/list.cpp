@@ -60,20 +60,29 @@ Json environments() {
   return all;
 }
 
-Json scenarios() {
+// Only names are found without reading files, of which there may be many.
+Json scenarios(bool read) {
   Json all = Json::array();
   for (const std::string& id : scenario_ids()) {
+    if (!read) {
+      all.push_back({{"id", id}});
+      continue;
+    }
     const Scenario scenario = load_scenario(id);
     all.push_back({{"id", id}, {"task", scenario.task}, {"summary", scenario.commands.front().utterance}});
   }
   return all;
 }
 
-Json listing(const Catalogue& catalogue) {
-  Json all{{"methods", Json::array()},       {"reference rows", reference_rows()},
-           {"engines", Json::array()},       {"perturbations", perturbations()},
-           {"environments", environments()}, {"suites", suites()},
-           {"scenarios", scenarios()},       {"refused", Json::array()}};
+Json listing(const Catalogue& catalogue, bool read_scenarios) {
+  Json all{{"methods", Json::array()},
+           {"reference rows", reference_rows()},
+           {"engines", Json::array()},
+           {"perturbations", perturbations()},
+           {"environments", environments()},
+           {"suites", suites()},
+           {"scenarios", scenarios(read_scenarios)},
+           {"refused", Json::array()}};
   for (const PluginInfo& plugin : catalogue.plugins)
     all[plugin.kind + "s"].push_back(
         {{"id", plugin.id}, {"version", plugin.version}, {"summary", plugin.summary}, {"file", plugin.file.string()}});
@@ -95,6 +104,10 @@ void print_list(const Json& all, const std::string& kind, bool is_short) {
   for (const std::string section : sections) {
     if (!kind.empty() && section != (kind == "rows" ? "reference rows" : kind)) continue;
     to_stdout("{}\n", section);
+    if (section == "scenarios" && !is_short) {
+      to_stdout("  {}: `lgabench list scenarios --short` has their commands\n", all[section].size());
+      continue;
+    }
     std::size_t width = 0;
     for (const Json& row : all[section]) width = std::max(width, row["id"].get_ref<const std::string&>().size());
     for (const Json& row : all[section])
@@ -202,7 +215,8 @@ void add_list(CLI::App& app, int& exit) {
       "Examples\n  lgabench list --short\n  lgabench list suites --short\n  lgabench list layouts --of mobile\n"
       "  lgabench list --plugin-path my/build");
   verb->callback([arguments, &exit] {
-    const Json all = listing(plugins_at(arguments->directories, arguments->python));
+    const Json all =
+        listing(plugins_at(arguments->directories, arguments->python), arguments->json || arguments->is_short);
     if (arguments->kind.empty() && !arguments->of.empty()) throw InputError("--of: expected a KIND with it");
     const std::string& kind = arguments->kind;
     const bool is_section = kind.empty() || kind == "rows" ||
