@@ -93,40 +93,52 @@ Scores scores_of(const std::string& asking, const Suite& suite, Truth truth, int
   return all;
 }
 
-// Scenarios behind whose words stands a preference, and whether the hypotheses on it hold the truth. Those on which
-// there are none are left out.
-std::map<std::string, bool> coverage_of(const Suite& suite, Truth truth, const WithAnswers& with_answers) {
-  std::map<std::string, bool> covered;
+// A command behind whose words stands a preference, and whether the hypotheses on it hold the truth.
+struct Covered {
+  std::string scenario, name;
+  bool holds_truth;
+};
+
+// Those on which there are no hypotheses are left out.
+std::vector<Covered> coverage_of(const Suite& suite, Truth truth, const WithAnswers& with_answers) {
+  std::vector<Covered> all;
   for (const std::string& id : suite_scenario_ids(suite, suite.design)) {
     const Scenario scenario = suite_scenario(suite, id, truth);
-    if (!scenario.json.contains("words")) continue;
+    const bool of_persons = scenario.json.contains("persons");
+    if (!of_persons && !scenario.json.contains("words")) continue;
     with_answers(scenario, [&](LanguageModel& model) {
-      const std::vector<Hypothesis> hypotheses = model.hypotheses(scenario.command(0), scenario.space);
-      if (!hypotheses.empty()) covered[id] = covers_truth(hypotheses, scenario, 0);
+      for (int i = 0; i < (of_persons ? static_cast<int>(scenario.commands.size()) : 1); ++i) {
+        const Command command = scenario.command(i);
+        const std::vector<Hypothesis> hypotheses = model.hypotheses(command, scenario.space);
+        if (hypotheses.empty()) continue;
+        all.push_back({id, of_persons ? command.utterance : id, covers_truth(hypotheses, scenario, i)});
+      }
     });
   }
-  return covered;
+  return all;
 }
 
-// A row for each group with such scenarios, or a line for all of them.
-void print_coverage(const std::map<std::string, bool>& covered, const Groups& groups, bool json) {
-  if (covered.empty()) return;
+// A row for each group with such commands, or a line for all of them.
+void print_coverage(const std::vector<Covered>& all, const Groups& groups, bool json) {
+  if (all.empty()) return;
   for (const auto& [group, scenarios] : groups) {
     int commands = 0, with_truth = 0;
-    for (const std::string& id : scenarios)
-      if (const auto found = covered.find(id); found != covered.end()) ++commands, with_truth += found->second;
+    for (const Covered& one : all)
+      if (std::find(scenarios.begin(), scenarios.end(), one.scenario) != scenarios.end())
+        ++commands, with_truth += one.holds_truth;
     if (json && commands > 0)
       to_stdout(
           "{}\n",
           canonical({{"group", group}, {"asked", "hypotheses"}, {"commands", commands}, {"covered", with_truth}}));
   }
   if (json) return;
+  constexpr std::size_t most_names = 10;
   std::vector<std::string> lacking;
-  for (const auto& [id, holds_truth] : covered)
-    if (!holds_truth) lacking.push_back(id);
+  for (const Covered& one : all)
+    if (!one.holds_truth) lacking.push_back(one.name);
   to_stdout("hypotheses on what the words leave unsaid hold the truth for {} of {} commands{}{}\n",
-            covered.size() - lacking.size(), covered.size(), lacking.empty() ? "" : ", not for ",
-            fmt::join(lacking, ", "));
+            all.size() - lacking.size(), all.size(), lacking.empty() || lacking.size() > most_names ? "" : ", not for ",
+            lacking.size() > most_names ? std::string() : fmt::format("{}", fmt::join(lacking, ", ")));
 }
 
 std::string share(int part, int of) { return of == 0 ? "-" : fixed(static_cast<double>(part) / of); }
@@ -185,7 +197,7 @@ void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const 
       left_out += fmt::format("{}: {}\n", asking, one_line(e.what()));
     }
   }
-  std::map<std::string, bool> covered;
+  std::vector<Covered> covered;
   try {
     covered = coverage_of(suite, truth, with_answers);
   } catch (const InputError& e) {

@@ -68,7 +68,7 @@ Grid along_demonstrations(const NamedTable& table, const std::string& arm) {
 
 Grid by_arm(const NamedTable& table, const std::vector<std::string>& arms, int n) {
   const Titles titles(table.setting.suite);
-  Grid grid = grid_of(table, "_arms", fmt::format("Success in every arm, {} demonstrations", n));
+  Grid grid = grid_of(table, "_arms", fmt::format("Success in every arm, {} demonstration{}", n, n == 1 ? "" : "s"));
   for (const NamedStanding& s : table.standings) {
     add_named_row(grid, s);
     for (const std::string& arm : arms)
