@@ -1,5 +1,7 @@
 #include <mobile/judge.hpp>
 
+#include <algorithm>
+
 #include <mobile/receivers.hpp>
 
 namespace lgabench::mobile {
@@ -32,6 +34,20 @@ Failure judge(const Scene& scene, const Task& task, const std::vector<Pose>& bef
     if (is.z < fallen_m || std::sqrt(dot(way, way)) > moved_m) return failure::moved_another;
   }
   return failure::none;
+}
+
+std::vector<Gap> gaps(const Scene& scene, const Task& task, const std::vector<Pose>& before,
+                      const std::vector<Pose>& now, std::size_t taken) {
+  const Vec3 centre = centre_of(scene.objects[taken], now[taken]);
+  const double aside_m = task.goal.outer().away({centre.x, centre.y});
+  const double below_m = std::max({0., task.goal.floor_m - centre.z, centre.z - task.goal.rim_m - leaning_m});
+  double others_m = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (i == taken) continue;
+    const Vec3 is = centre_of(scene.objects[i], now[i]), way = is - centre_of(scene.objects[i], before[i]);
+    others_m = std::max({others_m, fallen_m - is.z, std::sqrt(dot(way, way)) - moved_m});
+  }
+  return {{"place_m", std::hypot(aside_m, below_m)}, {"others_m", others_m}};
 }
 
 }  // namespace lgabench::mobile

@@ -13,4 +13,9 @@ namespace lgabench::mobile {
 Failure judge(const Scene& scene, const Task& task, const std::vector<Pose>& before, const std::vector<Pose>& now,
               std::size_t taken);
 
+/// How far that is from success (StepResult::gaps): `place_m` from the goal to what was carried, and `others_m` that
+/// another moved beyond what it may. Arguments as above. Pure.
+std::vector<Gap> gaps(const Scene& scene, const Task& task, const std::vector<Pose>& before,
+                      const std::vector<Pose>& now, std::size_t taken);
+
 }  // namespace lgabench::mobile

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <tuple>
@@ -179,18 +180,44 @@ class Mobile final : public Environment {
     return {drop_m, 0, table_top_m, table_top_m, table_top_m};
   }
 
-  // What the ray through the plan's place in the picture meets first.
+  // What the ray through the plan's place in the last picture meets first.
   Surface aimed_at(const Plan& plan) const {
     const PictureSize size = front_camera().size;
-    find_objects();
-    renderer_.ids(objects_);
     return renderer_.surface(std::min(static_cast<int>(plan.v * size.rows), size.rows - 1),
                              std::min(static_cast<int>(plan.u * size.columns), size.columns - 1));
   }
 
+  // From the plan's place in the last picture to the nearest that shows a target; the picture's diagonal where none
+  // does.
+  double aim_px(const Plan& plan, const std::vector<std::uint8_t>& ids) const {
+    const PictureSize size = front_camera().size;
+    std::vector<bool> is_target(256);
+    for (const SceneObject& o : scene_.objects) is_target[o.instance_id] = o.role == role::target;
+    const double row = std::min(std::floor(plan.v * size.rows), size.rows - 1.);
+    const double column = std::min(std::floor(plan.u * size.columns), size.columns - 1.);
+    double least = std::hypot(size.rows, size.columns);
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      if (is_target[ids[i]]) {
+        const int at = static_cast<int>(i);
+        least = std::min(least, std::hypot(at / size.columns - row, at % size.columns - column));
+      }
+    return least;
+  }
+
+  bool cannot_drive(const Plan& plan) const {
+    return blocked(plan.waypoint_m) || !within_reach(plan) || meets_person(plan.waypoint_m, plan.drop_m);
+  }
+
   // A plan that cannot succeed ends where that shows: nothing moves.
   Failure carry_out(const Plan& plan, StepResult& result) {
+    find_objects();
+    const double aim = aim_px(plan, renderer_.ids(objects_));
     const Surface surface = aimed_at(plan);
+    result.gaps = {{"reach_px", aim},
+                   {"pick", aim == 0 ? 0. : 1.},
+                   {"drive", cannot_drive(plan) ? 1. : 0.},
+                   {"place_m", task_.goal.outer().away(plan.drop_m)},
+                   {"others_m", 0}};
     if (surface.kind == Surface::Kind::furniture) return failure::wrong_object;
     if (surface.kind != Surface::Kind::object) return failure::missed_object;
     const auto& objects = scene_.objects;
@@ -208,6 +235,8 @@ class Mobile final : public Environment {
     result.recoverable = false;  // it has left the table
     result.truncated =
         !carry({*world_, fixed}, first_ + static_cast<int>(taken), surface.point_m, plan, under(plan.drop_m));
+    result.gaps.resize(3);
+    for (Gap& gap : gaps(scene_, task_, before_, poses(), taken)) result.gaps.push_back(std::move(gap));
     if (result.truncated) return failure::truncated;
     return judge(scene_, task_, before_, poses(), taken);
   }

@@ -1,5 +1,6 @@
 // The room: where the robot starts, and what stands in it for good (docs/protocol.md, section 7). z = 0 is the floor.
 #pragma once
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct Rectangle {
   Vec2 low, high;
   bool contains(Vec2 p) const { return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y; }
   Vec2 centre() const { return .5 * (low + high); }
+  /// How far outside a point lies.
+  double away(Vec2 p) const { return norm(p - Vec2{std::clamp(p.x, low.x, high.x), std::clamp(p.y, low.y, high.y)}); }
 };
 
 /// The robot: a disc on the floor. It starts at the origin and looks along +x.

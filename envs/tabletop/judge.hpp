@@ -12,4 +12,10 @@ namespace lgabench::tabletop {
 /// scene lacks a target, or an object that its task needs.
 Failure judge(const Scene& scene, const std::vector<Pose>& poses, const Motion& motion);
 
+/// How far from success that state is (StepResult::gaps): `reach_m` from where the action took hold to the target,
+/// `pick`, `outside_m` of the working area, and the task's own. Of several targets it is that which succeeded, else
+/// that which was taken, else the nearest to the action. `before`: poses when the action began. Pure. @throws likewise.
+std::vector<Gap> gaps(const Scene& scene, const TwoPoses& action, const std::vector<Pose>& before,
+                      const std::vector<Pose>& poses, const Motion& motion);
+
 }  // namespace lgabench::tabletop

@@ -74,7 +74,9 @@ class Tabletop final : public Environment {
   void show_shadows(bool on) override { shadows_ = on; }
 
   StepResult step(const Action& action) override {
-    Motion motion = task_->carry_out(scene_, {*world_, fixed_}, executable(two_poses(), action));
+    const TwoPoses carried_out = executable(two_poses(), action);
+    const std::vector<Pose> before = poses();
+    Motion motion = task_->carry_out(scene_, {*world_, fixed_}, carried_out);
     if (went_wrong_ == failure::none) went_wrong_ = motion.failure;
     motion.failure = went_wrong_;
     const std::vector<Pose> reached = poses();
@@ -84,6 +86,7 @@ class Tabletop final : public Environment {
     result.truncated = !motion.came_to_rest;
     result.failure = judge(scene_, reached, motion);
     result.is_success = result.failure == failure::none;
+    result.gaps = gaps(scene_, carried_out, before, reached, motion);
     if (motion.taken != no_body) result.taken = scene_.objects[static_cast<std::size_t>(motion.taken)].instance_id;
     result.recoverable = !result.truncated && result.failure != failure::left_workspace && went_wrong_ == failure::none;
     return result;

@@ -70,6 +70,15 @@ class Task {
   /// Did that target end as the task asks? All bodies rest, within the workspace. Pure. `finals` in the order of
   /// scene.objects. @returns failure::none or one of failures(). @throws InputError where the scene lacks an object.
   virtual Failure judge(const Scene& scene, const Final& target, const std::vector<Final>& finals) const = 0;
+  /// How far judge() is from success with that target: the same parts in every scene, all 0 where it succeeds.
+  virtual std::vector<Gap> gaps(const Scene& /*scene*/, const Final& /*target*/, const std::vector<Final>& /*finals*/,
+                                const Motion& /*motion*/) const {
+    return {};
+  }
+  /// How far from an object, which has that outline, the action takes hold.
+  virtual double reach_m(const TwoPoses& action, const std::vector<Polygon>& outline) const {
+    return distance(action.pose0.position_m, outline);
+  }
 };
 
 /// All tasks, in the order in which tables and checks name them.

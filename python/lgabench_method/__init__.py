@@ -76,6 +76,7 @@ class FeatureSet:
     textures: list[str] = field(default_factory=list)
 
     def contains(self, object_type: str, texture: str) -> bool:
+        """Both are among its features."""
         return object_type in self.object_types and texture in self.textures
 
 
@@ -138,6 +139,7 @@ class Selection:
 
     @property
     def target(self) -> FeatureSet:
+        """The meaning's one product; ValueError where it is more."""
         if len(self.meaning.sets) != 1 or self.meaning.which:
             raise ValueError("Selection.target: the meaning is more than one product; read Selection.meaning, or grounded()")
         return self.meaning.sets[0]

@@ -28,6 +28,7 @@ class Background:
 
 @dataclass(frozen=True)
 class Colour:
+    """One colour everywhere, each part from 0 to 255."""
     red: int
     green: int
     blue: int

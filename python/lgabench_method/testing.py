@@ -32,6 +32,7 @@ class TrueAnswers:
         self.asked = 0
 
     def answer(self, command: Command, space: FeatureSpace, questions: Sequence[Question]) -> list[bool]:
+        """A yes or no for each question, from the truth."""
         truth = self.scenario.truth(self.scenario.commands.index(command.utterance))
         self.asked += len(questions)
         answers = []
@@ -41,10 +42,12 @@ class TrueAnswers:
         return answers
 
     def mean(self, command: Command, space: FeatureSpace) -> Meaning:
+        """The truth."""
         self.asked += 1
         return self.scenario.truth(self.scenario.commands.index(command.utterance)).meaning
 
     def hypotheses(self, command: Command, space: FeatureSpace) -> list[Hypothesis]:
+        """None."""
         return []
 
 
@@ -52,21 +55,27 @@ class NoPeople:
     """Nobody is asked: every call raises Refused."""
 
     def specify(self, command: Command) -> Selection:
+        """Raises Refused."""
         raise Refused("no person is asked in a test")
 
     def edit(self, command: Command, proposal: Selection) -> Selection:
+        """Raises Refused."""
         raise Refused("no person is asked in a test")
 
     def accepts(self, command: Command, object_type: str, texture: str) -> bool:
+        """Raises Refused."""
         raise Refused("no person is asked in a test")
 
     def scene(self, command: Command, scene: int) -> list[dict[str, Any]]:
+        """Raises Refused."""
         raise Refused("no person is asked in a test")
 
     def takes(self, command: Command, scene: int, instance: int) -> bool:
+        """Raises Refused."""
         raise Refused("no person is asked in a test")
 
     def which(self, command: Command, scene: int) -> Optional[int]:
+        """Raises Refused."""
         raise Refused("no person is asked in a test")
 
 
@@ -77,6 +86,7 @@ class Curves:
         self.epochs: list[tuple[int, int, float, dict[str, float]]] = []
 
     def epoch(self, epochs: int, steps: int, loss: float, **curves: float) -> None:
+        """As the log of a cell takes it."""
         self.epochs.append((epochs, steps, loss, curves))
 
 

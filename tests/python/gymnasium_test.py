@@ -15,6 +15,7 @@ from gymnasium.utils.env_checker import check_env
 
 import lgabench
 from lgabench import registration
+from lgabench.gym import dense_reward
 from scenes_test import ENGINE, EXAMPLES, FULL
 
 VERSIONS = pathlib.Path(__file__).parents[2] / "python/package/lgabench/versions.json"
@@ -77,7 +78,9 @@ class Gymnasium(unittest.TestCase):
         self.assertEqual(set(obs), {"rgb", "ids", "instances", "instruction"})
         self.assertTrue(numpy.array_equal(env.render(), obs["rgb"]))
         _, reward, terminated, truncated, info = env.step(env.unwrapped.expert_action())
-        self.assertEqual((reward, terminated, truncated, info), (1.0, True, False, {"is_success": True, "failure": "none"}))
+        self.assertEqual((reward, terminated, truncated), (1.0, True, False))
+        self.assertEqual((info["is_success"], info["failure"]), (True, "none"))
+        self.assertEqual(set(info["distance"].values()), {0.})
         with self.assertRaisesRegex(RuntimeError, "expected a reset"):
             env.step(env.action_space.sample())
         env.reset(seed=0)
@@ -97,8 +100,9 @@ class Gymnasium(unittest.TestCase):
         same_step = {"autoreset_mode": gymnasium.vector.AutoresetMode.SAME_STEP}
         for split in ("train", "test"):
             for threads in (1, 2, 7):
-                sync = make_vec("heart", 4, vectorization_mode="sync", vector_kwargs=same_step, split=split)
-                vector = make_vec("heart", 4, threads=threads, split=split)
+                mode = {"split": split, "reward_mode": "dense" if threads == 2 else "sparse"}
+                sync = make_vec("heart", 4, vectorization_mode="sync", vector_kwargs=same_step, **mode)
+                vector = make_vec("heart", 4, threads=threads, **mode)
                 vector.action_space.seed(0)
                 self.assertEqual(sync.observation_space, vector.observation_space)
                 self.same(sync.reset(seed=11), vector.reset(seed=11))
@@ -130,13 +134,71 @@ class Gymnasium(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "path=FILE.json"):
             gymnasium.make("lgabench/own-v1")
 
-    def test_a_seed_beyond_a_splits_scenes_says_which_it_plays(self):
-        env = make("heart", layout="cells", split="test")
-        first = env.reset(seed=2**31 - 2)[1]["scene"]
-        with warnings.catch_warnings(record=True) as said:
-            warnings.simplefilter("always")
-            self.assertEqual(env.reset(seed=2 * (2**31 - 1) - 1)[1]["scene"], first)
-        self.assertIn(f"plays scene {2**31 - 2}", "".join(str(one.message) for one in said))
+    def test_a_seed_without_a_scene_is_refused(self):
+        env, vector = make("heart", layout="cells", split="test"), make_vec("heart", 2, layout="cells", split="test")
+        env.reset(seed=2**31 - 1)
+        for call in (lambda: env.reset(seed=2**31), lambda: env.reset(), lambda: vector.reset(seed=2**31 - 1)):
+            with self.assertRaisesRegex(ValueError, "^seed 2147483648: expected 0 to 2147483647, as split test has a scene for each$"):
+                call()
+        make("heart", layout="cells").reset(seed=2**64)  # of split train it begins a random stream
+        for options in ({"index": 2**31}, {"index": -1}):
+            with self.assertRaisesRegex(ValueError, "^index -?[0-9]+: expected 0 to 2147483647$"):
+                env.reset(options=options)
+            with self.assertRaisesRegex(ValueError, "^index -?[0-9]+: expected 0 to 2147483647$"):
+                vector.reset(options=options)
+        for seed in (-1, 2**64):
+            for call in (lambda: env.reset(options={"scene_seed": seed}), lambda: vector.reset(options={"scene_seed": seed}),
+                         lambda: lgabench.Environment("heart", ENGINE).reset("test", seed=seed)):
+                with self.assertRaisesRegex(ValueError, f"^seed {seed}: expected 0 to {2**64 - 1}$"):
+                    call()
+        with self.assertRaisesRegex(ValueError, "^own_scenes -1: expected 0 to"):
+            lgabench.Environment("heart", ENGINE).reset("test", own_scenes=-1)
+
+    def test_what_success_lacks(self):
+        """Every task names its parts, the same in all scenes; a success has none left, and a dense reward of 1 exactly then."""
+        for scenario in EXAMPLES:
+            with self.subTest(scenario):
+                sparse, dense = (make(scenario, split="test", reward_mode=mode) for mode in ("sparse", "dense"))
+                parts = set()
+                dense.action_space.seed(0)
+                for index in range(6):
+                    sparse.reset(seed=index)
+                    dense.reset(seed=index)
+                    action = dense.action_space.sample() if index % 2 else dense.unwrapped.expert_action()
+                    _, reward, _, _, info = dense.step(action)
+                    _, zero_or_one, _, _, same = sparse.step(action)
+                    self.assertEqual((info, zero_or_one), (same, float(info["is_success"])))
+                    self.assertEqual(reward == 1, info["is_success"])
+                    self.assertEqual(not any(info["distance"].values()), info["is_success"])
+                    self.assertTrue(0 < reward <= (1 if info["is_success"] else .9), reward)
+                    parts.add(tuple(info["distance"]))
+                self.assertEqual(len(parts), 1)
+
+    def test_a_dense_reward_falls_with_every_distance(self):
+        parts = {"reach_m": .2, "pick": 1., "turn_deg": 30., "reach_px": 10.}
+        usual = dense_reward(False, parts)
+        for part, value in parts.items():
+            self.assertEqual(dense_reward(True, parts), 1.)
+            self.assertGreater(dense_reward(False, {**parts, part: value / 2}), usual)
+            self.assertLess(dense_reward(False, {**parts, part: value * 2}), usual)
+            self.assertLess(dense_reward(False, {**parts, part: 1e300}), 1e-200)
+        self.assertEqual(dense_reward(False, dict.fromkeys(parts, 0.)), .9)
+        self.assertAlmostEqual(dense_reward(False, {"place_m": .1, "turn_deg": 15., "reach_px": 50., "pick": 1.}), .9 / 16)
+
+    def test_a_dense_reward_rises_on_the_way_to_the_target(self):
+        env = make("heart", split="test", reward_mode="dense")
+        env.reset(seed=0)
+        expert = env.unwrapped.environment.expert_action()
+        rewards = []
+        for away in (.4, .3, .2, .1, 0.):
+            env.reset(seed=0)
+            action = expert.copy()
+            action[0] += away if expert[0] < .5 else -away
+            rewards.append(env.step(env.unwrapped.from_metres(action))[1])
+        self.assertEqual(rewards, sorted(rewards))
+        self.assertEqual(rewards[-1], 1)
+        with self.assertRaisesRegex(ValueError, "reward_mode 'shaped': expected sparse or dense"):
+            make("heart", reward_mode="shaped")
 
     def test_scaled_actions(self):
         env = make("bring_fruit").unwrapped

@@ -118,7 +118,7 @@ class Scenes(unittest.TestCase):
         for threads in (1, 2, 7):
             pool = lgabench.Pool("heart", 7, threads, ENGINE)
             batch = pool.reset("test", range(7))
-            after, success, failures = pool.step(pool.expert_actions())
+            after, success, failures, distances = pool.step(pool.expert_actions())
             for i, (seen, rows, result) in enumerate(alone):
                 self.assertTrue(numpy.array_equal(batch.rgb[i], seen.rgb) and numpy.array_equal(batch.ids[i], seen.ids))
                 self.assertTrue(numpy.array_equal(batch.instances[i], rows))

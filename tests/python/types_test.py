@@ -1,13 +1,17 @@
 """The packages' types, as an author's type checker reads them; lgabench_method.testing, as an author's unit test calls it."""
+import importlib
 import importlib.util
+import inspect
 import os
 import pathlib
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
 
 import lgabench
+import lgabench_method
 from lgabench_method import Selection, testing
 
 SOURCE = pathlib.Path(__file__).parents[2]
@@ -82,6 +86,34 @@ class Testing(unittest.TestCase):
             testing.services(nearest(), second=1)
 
 
+class Docstrings(unittest.TestCase):
+    MODULES = ("lgabench", "lgabench.scenes", "lgabench.gym", "lgabench.data", "lgabench.evaluation", "lgabench.kept", "lgabench.evals",
+               "lgabench.registration", "lgabench_method", "lgabench_method.testing", "lgabench_method.repaint")
+
+    def without(self, module):
+        """Public names of a module, and of its classes, that say nothing of themselves."""
+        for name in getattr(module, "__all__", None) or [one for one in vars(module) if not one.startswith("_")]:
+            thing = getattr(module, name)
+            if not (inspect.isroutine(thing) or inspect.isclass(thing)):
+                continue
+            if not hasattr(module, "__all__") and thing.__module__ != module.__name__:
+                continue
+            if not (inspect.getdoc(thing) or "").strip() or (thing.__doc__ or "").startswith(f"{name}("):  # a dataclass's own
+                yield f"{module.__name__}.{name}"
+            for member, value in vars(thing).items() if inspect.isclass(thing) else ():
+                is_named = inspect.isroutine(value) or isinstance(value, (property, classmethod, staticmethod))
+                if is_named and not member.startswith("_") and not (inspect.getdoc(getattr(thing, member)) or "").strip():
+                    yield f"{module.__name__}.{name}.{member}"
+
+    def test_every_public_name_has_one(self):
+        self.assertEqual([name for module in self.MODULES for name in self.without(importlib.import_module(module))], [])
+
+    def test_one_without_is_found(self):
+        module = types.ModuleType("own")
+        exec("class Own:\n    'a class'\n    def act(self): pass\ndef plain(): pass\n", vars(module))
+        self.assertEqual(list(self.without(module)), ["own.Own.act", "own.plain"])
+
+
 class Types(unittest.TestCase):
     def mypy(self, *words):
         build = pathlib.Path(os.environ["LGABENCH_BUILD"])
@@ -105,6 +137,19 @@ class Types(unittest.TestCase):
             said = self.mypy(own)
             self.assertIn('"Step" has no attribute "name"', said)
             self.assertIn('expression has type "Nearest", variable has type "Method"', said)
+
+    def test_a_users_scenes_are_checked(self):
+        for package in lgabench, lgabench_method:
+            self.assertTrue(pathlib.Path(package.__file__).with_name("py.typed").exists(), "a checker would take it as untyped")
+        with tempfile.TemporaryDirectory() as directory:
+            own = pathlib.Path(directory, "own.py")
+            own.write_text("import lgabench\nfrom lgabench.gym import SceneEnv, dense_reward\n\n"
+                           "env: SceneEnv = SceneEnv('heart', reward_mode='dense')\n"
+                           "result = lgabench.Environment('heart').step([0.0])\n"
+                           "reward: float = dense_reward(result.success, result.distance)\n")
+            self.assertIn("Success", self.mypy(own))
+            own.write_text(own.read_text().replace("result.distance", "result.failure"))
+            self.assertIn('Argument 2 to "dense_reward" has incompatible type "str"', self.mypy(own))
 
 
 if __name__ == "__main__":

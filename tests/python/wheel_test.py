@@ -127,6 +127,9 @@ class Wheel(unittest.TestCase):
                 outside = [file for file in re.findall(r"=> (/\S+)", said) if not file.startswith(str(self.dir))]
                 system = r"/(libc|libm|libdl|librt|libpthread|libresolv|libanl|libstdc\+\+|libgcc_s)\.so"
                 self.assertEqual([file for file in outside if not re.search(system, file)], [], path)
+        for package in "lgabench", "lgabench_method":
+            self.assertTrue((self.site / package / "py.typed").exists())
+        self.assertTrue((self.site / "lgabench/_core.pyi").exists())
         licences = {path.name for path in self.site.glob("lgabench-*.dist-info/licenses/*")}
         self.assertLessEqual({"LICENSE", "mujoco", "libembree3-3", "libx11-6", "libcurl4"}, licences)
         self.assertLess(self.wheel.stat().st_size, 55e6)

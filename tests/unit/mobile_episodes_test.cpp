@@ -2,7 +2,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <string>
 
 #include <mobile/drive.hpp>
 #include <mobile/judge.hpp>
@@ -66,6 +70,31 @@ TEST(MobileEpisode, FailsAsThePlanDoes) {
   EXPECT_EQ(result.failure, failure::wrong_object);
   EXPECT_TRUE(result.recoverable);
   EXPECT_TRUE(environment().step(environment().expert_action()).is_success) << "nothing has moved";
+}
+
+TEST(MobileEpisode, SaysHowFarEachPartIsFromSuccess) {
+  const Scene scene = test_scene("bring_fruit", "moved", 1);
+  const auto after = [&](const std::function<void(Plan&)>& change) {
+    environment().reset(scene);
+    Plan plan = environment().expert_action();
+    change(plan);
+    const StepResult result = environment().step(plan);
+    std::map<std::string, double> parts;
+    for (const Gap& gap : result.gaps) parts[gap.part] = gap.value;
+    const bool all_zero = std::all_of(parts.begin(), parts.end(), [](const auto& gap) { return gap.second == 0; });
+    EXPECT_EQ(all_zero, result.is_success) << result.failure;
+    EXPECT_EQ(parts.size(), 5U);
+    return parts;
+  };
+  EXPECT_EQ(after([](Plan&) {})["place_m"], 0);
+  const double far_px = after([](Plan& p) { p.u = 0, p.v = 1; })["reach_px"];
+  EXPECT_GT(far_px, 100);
+  EXPECT_LT(after([](Plan& p) { p.v = std::min(1., p.v + .2); })["reach_px"], far_px);
+  EXPECT_EQ(after([](Plan& p) { p.u = 0, p.v = 1; })["pick"], 1);
+  EXPECT_EQ(after([](Plan& p) { p.waypoint_m = {2, 0}; })["drive"], 1);
+  const auto dropped = after([](Plan& p) { p.drop_m = p.waypoint_m + .3 * Vec2{p.cosine, p.sine}; });
+  EXPECT_GT(dropped.at("place_m"), .2);
+  EXPECT_EQ(dropped.at("pick") + dropped.at("drive") + dropped.at("reach_px"), 0);
 }
 
 TEST(MobileEpisode, RefusesAPlanThatIsNone) {

@@ -1,11 +1,14 @@
 // Success and failures at their boundaries, without physics.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include <common/objects.hpp>
 #include <lgabench/core/error.hpp>
+#include <lgabench/core/random.hpp>
 #include <tabletop/judge.hpp>
 #include <tabletop/oracle.hpp>
 #include <tabletop/task.hpp>
@@ -228,6 +231,85 @@ TEST(Sweep, NeedsATargetAndAnObstacle) {
   Scene scene = sweep();
   scene.objects[2].role = role::distractor;
   EXPECT_THROW(touches_obstacle(scene, start(scene), {}, {}), InputError);
+}
+
+// 0: distractor, 1: target, 2: support.
+Scene on_hexagon() {
+  Scene scene;
+  scene.task = "stack";
+  scene.objects = {object("block", role::distractor, {.4, -.3}, 1), object("small block", role::target, {.6, -.1}, 2),
+                   object("hexagon", "support", {.4, .2}, 3)};
+  return scene;
+}
+
+std::map<std::string, double> gaps_of(const Scene& scene, const std::vector<Pose>& poses, const Motion& motion,
+                                      const TwoPoses& action = {}) {
+  std::map<std::string, double> by_part;
+  for (const Gap& gap : gaps(scene, action, start(scene), poses, motion)) by_part[gap.part] = gap.value;
+  return by_part;
+}
+
+TEST(Gaps, AreAllZeroExactlyWhereThePosesSucceed) {
+  RandomStream random("gaps");
+  for (const Scene& scene : {bring(), turn(120), sweep(), on_hexagon()}) {
+    int successes = 0;
+    const std::size_t parts = gaps_of(scene, start(scene), took_nothing).size();
+    for (int i = 0; i < 3000; ++i) {
+      auto poses = start(scene);
+      const auto moved = random.below(3) == 0 ? random.below(static_cast<std::uint32_t>(poses.size())) : 1;
+      poses[moved].position_m = {random.uniform(.2, .8), random.uniform(-.55, .55), random.uniform(0, .05)};
+      if (random.coin()) poses[moved].position_m = {.4, random.coin() ? .3 : .2, .036};
+      if (random.coin()) poses[1].position_m = start(scene)[1].position_m;
+      poses[1].rotation = from_yaw(random.uniform(-pi, pi));
+      const std::size_t taken = random.below(static_cast<std::uint32_t>(poses.size() + 1));
+      Motion motion{taken < poses.size() ? static_cast<int>(taken) : no_body, true};
+      if (scene.task == "sweep" && random.below(4) == 0) motion.failure = "touched_obstacle";
+      const auto by_part = gaps_of(scene, poses, motion);
+      const bool all_zero =
+          std::all_of(by_part.begin(), by_part.end(), [](const auto& gap) { return gap.second == 0; });
+      const bool success = judge(scene, poses, motion) == failure::none;
+      EXPECT_EQ(all_zero, success) << scene.task << ' ' << i;
+      EXPECT_EQ(by_part.size(), parts);
+      for (const auto& [part, value] : by_part) EXPECT_GE(value, 0) << part;
+      successes += success;
+    }
+    EXPECT_GT(successes, 30) << scene.task;
+  }
+}
+
+TEST(Gaps, AreMetresAndDegreesToWhereSuccessBegins) {
+  const auto moved = [](const Scene& scene, std::size_t which, Vec2 to, double yaw, const Motion& motion) {
+    auto poses = start(scene);
+    poses[which] = {{to.x, to.y, 0}, from_yaw(yaw)};
+    return gaps_of(scene, poses, motion, {{{.5, -.1}, {}}, {{.5, .3}, {}}});
+  };
+  const Scene to_pallet = bring(), rotated = turn(120), swept = sweep();
+  EXPECT_NEAR(moved(to_pallet, 1, {.5, .05}, 0, took_target)["place_m"], .15, 1e-12);
+  EXPECT_EQ(moved(to_pallet, 1, {.5, .05}, 0, took_target)["reach_m"], 0);
+  EXPECT_NEAR(moved(to_pallet, 0, {.5, .27}, 0, took_distractor)["others_m"], .07, 1e-12);
+  EXPECT_NEAR(moved(to_pallet, 0, {.2, -.6}, 0, took_distractor)["outside_m"], std::hypot(.05, .1), 1e-12);
+  const double beside_m = moved(to_pallet, 1, {.6, -.1}, 0, took_nothing)["reach_m"];
+  EXPECT_GT(beside_m, .02);
+  EXPECT_LT(beside_m, .1) << "to the heart's edge, not to its centre";
+  EXPECT_EQ(moved(to_pallet, 1, {.6, -.1}, 0, took_nothing)["pick"], 1);
+  EXPECT_NEAR(moved(rotated, 1, {.6, -.1}, 1 + pi / 2, took_target)["turn_deg"], 15, 1e-9);
+  EXPECT_NEAR(moved(rotated, 1, {.6, .1}, 1, took_target)["place_m"], .1, 1e-12);
+  EXPECT_NEAR(moved(rotated, 0, {.4, -.25}, 0, took_distractor)["others_m"], .03, 1e-12);
+  EXPECT_NEAR(moved(swept, 1, {.375, -.3}, 0, took_target)["place_m"], .04, 1e-12);
+  EXPECT_EQ(moved(swept, 1, {.375, .41}, 0, {1, true, "touched_obstacle"})["obstacle"], 1);
+  // The blade, .12 wide, passes over x from .44 to .56, and the target's edge is at .41.
+  EXPECT_NEAR(moved(swept, 1, {.375, .05}, 0, took_nothing)["reach_m"], .03, 1e-9);
+}
+
+TEST(Gaps, OfSeveralTargetsAreOfTheOneThatWasTakenOrIsNearest) {
+  Scene scene = bring();
+  scene.objects.push_back(object("star", role::target, {.5, -.1}, 4));
+  const auto near_star = [&](const Motion& motion) {
+    return gaps_of(scene, start(scene), motion, {{{.5, -.1}, {}}, {{.5, .3}, {}}});
+  };
+  EXPECT_EQ(near_star(took_nothing)["reach_m"], 0) << "the star's";
+  EXPECT_NEAR(near_star(took_nothing)["place_m"], .3, 1e-12);
+  EXPECT_NEAR(near_star(took_target)["place_m"], std::hypot(.1, .4) - .1, 1e-12) << "the heart's";
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // Pick-and-place: bring the target onto the pallet.
+#include <algorithm>
+
 #include <tabletop/oracle.hpp>
 #include <tabletop/task.hpp>
 
@@ -35,15 +37,25 @@ class PickAndPlace final : public Task {
   }
 
   Failure judge(const Scene& scene, const Final& target, const std::vector<Final>& finals) const override {
-    expect(scene, role::goal);
-    Vec2 goal;
-    for (const Final& f : finals)
-      if (f.object.role == role::goal) goal = f.centre_m;
+    const Vec2 goal = goal_of(scene, finals);
     if (norm(target.centre_m - goal) > near_m) return failure::bad_placement;
     for (const Final& f : finals)
-      if ((f.object.role == role::distractor || f.object.role == role::not_meant) && norm(f.centre_m - goal) <= near_m)
-        return failure::bad_placement;
+      if (is_other(f) && norm(f.centre_m - goal) <= near_m) return failure::bad_placement;
     return failure::none;
+  }
+  std::vector<Gap> gaps(const Scene& scene, const Final& target, const std::vector<Final>& finals,
+                        const Motion&) const override {
+    const Vec2 goal = goal_of(scene, finals);
+    double others_m = 0;
+    for (const Final& f : finals)
+      if (is_other(f)) others_m = std::max(others_m, near_m - norm(f.centre_m - goal));
+    return {{"place_m", std::max(0., norm(target.centre_m - goal) - near_m)}, {"others_m", others_m}};
+  }
+
+ private:
+  static bool is_other(const Final& f) { return f.object.role == role::distractor || f.object.role == role::not_meant; }
+  static Vec2 goal_of(const Scene& scene, const std::vector<Final>& finals) {
+    return finals[static_cast<std::size_t>(&expect(scene, role::goal) - scene.objects.data())].centre_m;
   }
 };
 

@@ -1,6 +1,7 @@
 // Rotate: turn the target in its place, by the scenario's angle.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include <common/objects.hpp>
@@ -61,8 +62,23 @@ class Rotate final : public Task {
     for (const Final& f : finals)
       if (f.object.role == role::distractor && norm(f.centre_m - f.object.position_m) > undisturbed_m)
         return failure::bad_placement;
-    const double error = std::remainder(target.yaw_rad - target.object.yaw_rad - asked_turn_rad(scene), 2 * pi);
-    return std::abs(error) <= angle_tolerance_deg * pi / 180 ? failure::none : bad_angle;
+    return error_rad(scene, target) <= angle_tolerance_deg * pi / 180 ? failure::none : bad_angle;
+  }
+  std::vector<Gap> gaps(const Scene& scene, const Final& target, const std::vector<Final>& finals,
+                        const Motion&) const override {
+    double others_m = 0;
+    for (const Final& f : finals)
+      if (f.object.role == role::distractor)
+        others_m = std::max(others_m, norm(f.centre_m - f.object.position_m) - undisturbed_m);
+    const double over_rad = std::max(0., error_rad(scene, target) - angle_tolerance_deg * pi / 180);
+    return {{"place_m", std::max(0., norm(target.centre_m - target.object.position_m) - in_place_m)},
+            {"turn_deg", over_rad * 180 / pi},
+            {"others_m", others_m}};
+  }
+
+ private:
+  static double error_rad(const Scene& scene, const Final& target) {
+    return std::abs(std::remainder(target.yaw_rad - target.object.yaw_rad - asked_turn_rad(scene), 2 * pi));
   }
 };
 

@@ -25,9 +25,12 @@ double lowest_z(const Final& object) {
   return lowest;
 }
 
+std::vector<Polygon> outline_of(const Final& object) {
+  return placed_outline(model_of(object.object), {object.pose.position_m.x, object.pose.position_m.y}, object.yaw_rad);
+}
+
 bool is_over(const Final& object, const Final& below) {
-  const auto outline =
-      placed_outline(model_of(below.object), {below.pose.position_m.x, below.pose.position_m.y}, below.yaw_rad);
+  const auto outline = outline_of(below);
   return std::any_of(outline.begin(), outline.end(),
                      [&](const Polygon& polygon) { return contains(polygon, object.centre_m); });
 }
@@ -54,6 +57,12 @@ class Stack final : public Task {
     const Final& onto = finals[static_cast<std::size_t>(&expect(scene, support) - scene.objects.data())];
     const double least_z = model_of(onto.object).height_m / 2;
     return is_over(target, onto) && lowest_z(target) > least_z ? failure::none : failure::bad_placement;
+  }
+  std::vector<Gap> gaps(const Scene& scene, const Final& target, const std::vector<Final>& finals,
+                        const Motion&) const override {
+    const Final& onto = finals[static_cast<std::size_t>(&expect(scene, support) - scene.objects.data())];
+    return {{"place_m", distance(target.centre_m, outline_of(onto))},
+            {"height_m", std::max(0., model_of(onto.object).height_m / 2 - lowest_z(target))}};
   }
 };
 

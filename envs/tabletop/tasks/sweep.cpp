@@ -24,6 +24,11 @@ constexpr double spatula_gap_m = 5e-4;  // to the table, which it need not scrap
 constexpr double push_speed = 0.25;     // m/s
 constexpr double aim_m = 0.41;          // |y| that the oracle brings the target's centre to
 
+Polygon blade_outline() {
+  const Vec2 half{spatula_size_m.x / 2, spatula_size_m.y / 2};
+  return {{-half.x, -half.y}, {half.x, -half.y}, {half.x, half.y}, {-half.x, half.y}};
+}
+
 std::vector<Pose> poses_of(const Scene& scene, const PhysicsWorld& world) {
   std::vector<Pose> all;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) all.push_back(world.pose(static_cast<int>(i)));
@@ -185,8 +190,7 @@ class Sweep final : public Task {
     const Vec2 from = action.pose0.position_m, to = action.pose1.position_m, way = to - from;
     constexpr double on_table = spatula_size_m.z / 2 + spatula_gap_m;
     Stance stance{{from.x, from.y, on_table + lift_m}, std::atan2(-way.x, way.y)};
-    const Vec2 half{spatula_size_m.x / 2, spatula_size_m.y / 2};
-    const std::vector<Polygon> blade{{{-half.x, -half.y}, {half.x, -half.y}, {half.x, half.y}, {-half.x, half.y}}};
+    const std::vector<Polygon> blade{blade_outline()};
 
     Motion motion;
     bool present = true;
@@ -221,6 +225,21 @@ class Sweep final : public Task {
 
   Failure judge(const Scene&, const Final& target, const std::vector<Final>&) const override {
     return GoalZones::contains(target.centre_m) ? failure::none : missed_zone;
+  }
+  std::vector<Gap> gaps(const Scene&, const Final& target, const std::vector<Final>&,
+                        const Motion& motion) const override {
+    const double y_m = std::abs(target.centre_m.y);
+    return {{"place_m", std::max({0., GoalZones::near_m - y_m, y_m - GoalZones::far_m})},
+            {obstacle, motion.failure == failure::none ? 0. : 1.}};
+  }
+  // From all that the blade passes over.
+  double reach_m(const TwoPoses& action, const std::vector<Polygon>& outline) const override {
+    const Vec2 from = action.pose0.position_m, to = action.pose1.position_m, way = to - from;
+    Polygon passed;
+    for (const Vec2 at : {from, to})
+      for (const Polygon& blade : placed({blade_outline()}, at, std::atan2(-way.x, way.y)))
+        passed.insert(passed.end(), blade.begin(), blade.end());
+    return distance(std::vector<Polygon>{convex_hull(passed)}, outline);
   }
 };
 

@@ -22,6 +22,13 @@ inline constexpr const char* abstraction_empty = "abstraction_empty";  // nothin
 inline constexpr const char* method_error = "method_error";            // the method threw, or gave no finite action
 }  // namespace failure
 
+/// How far a part of what success asks is from being right: 0 where it is. The name ends with the unit, _m, _deg or
+/// _px; without one it is 0 or 1.
+struct Gap {
+  std::string part;
+  double value = 0;
+};
+
 /// What an action led to.
 struct StepResult {
   Observation observation;  // after the motion, at rest
@@ -31,6 +38,7 @@ struct StepResult {
   bool recoverable = true;          // false: no further action can make it a success
   Failure failure = failure::none;  // none exactly if is_success
   std::uint8_t taken = 0;           // the instance that was moved on purpose; 0: none, or it is not told
+  std::vector<Gap> gaps;            // the same parts in every scene of a task, all 0 if is_success; none: not told
 };
 
 /// A scene's object as the engine has it.

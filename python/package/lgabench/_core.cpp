@@ -176,6 +176,13 @@ nb::tuple arrays(const Player& player, Observation seen) {
                         array(std::move(encoded), {size(most), 4}));
 }
 
+/// {part: value}
+nb::dict parts(const std::vector<Gap>& gaps) {
+  nb::dict all;
+  for (const Gap& gap : gaps) all[gap.part.c_str()] = gap.value;
+  return all;
+}
+
 /// One at a time: a second thread's call while one is under way is refused, as it would wait with Python's lock held.
 class OneCall {
  public:
@@ -212,7 +219,7 @@ class One {
       result = player_.step(numbers);
     }
     return nb::make_tuple(arrays(player_, std::move(result.observation)), result.is_success, result.failure,
-                          !result.truncated);
+                          !result.truncated, parts(result.gaps));
   }
 
   Doubles expert_action(std::optional<int> instance) {
@@ -253,7 +260,7 @@ class Pool {
     return batch.arrays();
   }
 
-  /// -> batches, successes, failures, whether all came to rest; actions: a row for each of `at`.
+  /// -> batches, successes, failures, whether all came to rest, what success lacks; actions: a row for each of `at`.
   nb::tuple step(const std::vector<int>& at, const Numbers& actions) {
     const OneCall call(mutex_, "step");
     expect_own_process();
@@ -264,6 +271,7 @@ class Pool {
     Batch batch(*players_.front(), at.size());
     std::vector<std::uint8_t> successes(at.size()), rests(at.size());
     std::vector<std::string> failures(at.size());
+    std::vector<std::vector<Gap>> gaps(at.size());
     const double* const numbers = actions.data();
     on_threads(at, [&](std::size_t row, Player& player) {
       const StepResult result = player.step(Action(numbers + row * n, numbers + (row + 1) * n));
@@ -271,9 +279,12 @@ class Pool {
       successes[row] = result.is_success;
       rests[row] = !result.truncated;
       failures[row] = result.failure;
+      gaps[row] = result.gaps;
     });
+    nb::list distances;
+    for (const std::vector<Gap>& one : gaps) distances.append(parts(one));
     return nb::make_tuple(batch.arrays(), array(std::move(successes), {at.size()}), failures,
-                          array(std::move(rests), {at.size()}));
+                          array(std::move(rests), {at.size()}), distances);
   }
 
   Doubles expert_actions(const std::vector<int>& at) {
@@ -394,8 +405,8 @@ NB_MODULE(_core, m) {
   });
   m.attr("version") = LGABENCH_VERSION;
   m.def("data_directory", [] { return data_directory().string(); });
-  m.def("scenarios", &scenario_ids);
-  m.def("engines", &engine_ids);
+  m.def("scenarios", &scenario_ids, "Ids of the shipped scenarios, and of those in directories that were added.");
+  m.def("engines", &engine_ids, "Ids of the engines that are installed.");
   nb::class_<Scenario>(m, "Scenario")
       .def_ro("id", &Scenario::id)
       .def_ro("task", &Scenario::task)

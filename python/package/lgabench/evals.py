@@ -89,7 +89,10 @@ def _of_items(items: tuple[tuple[str, ...], ...]) -> dict[str, float]:
 
 
 def _aggregation(metric: str) -> Callable[[Iterable[Sequence[str]]], float]:
-    return lambda items: _of_items(tuple(map(tuple, items)))[metric]
+    def of_all(items: Iterable[Sequence[str]]) -> float:
+        return _of_items(tuple(map(tuple, items)))[metric]
+    of_all.__doc__ = f"{metric} of all questions' results, as process_results() gives them."
+    return of_all
 
 
 scenes_exact, exact_sets, precision, recall = map(_aggregation, METRICS)
@@ -199,6 +202,7 @@ def _is_log(file: pathlib.Path) -> bool:
 
 
 def main() -> None:
+    """python -m lgabench.evals; exits with its status."""
     parser = argparse.ArgumentParser(prog="python -m lgabench.evals", description="Write tasks for lm-evaluation-harness.")
     parser.add_argument("folder", type=pathlib.Path, help="where to, for lm_eval --include_path")
     parser.add_argument("--suites", type=lambda text: text.split(","), default=suites(),

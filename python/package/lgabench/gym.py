@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, NoReturn, Optional, Sequence, SupportsFloat, Union
+from typing import Any, Mapping, NoReturn, Optional, Sequence, SupportsFloat, Union
 
 import gymnasium
 import numpy
@@ -11,13 +11,35 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from lgabench.scenes import Batch, Environment, Numbers, Pool, Scenario, SPLITS
+from lgabench.scenes import INDICES, Batch, Environment, Pool, Scenario, SPLITS
 
-__all__ = ["SceneEnv", "SceneVectorEnv"]
+__all__ = ["SceneEnv", "SceneVectorEnv", "dense_reward"]
 
-SEEDS = 2**31 - 1  # as many scenes as a split has: from 0 on, one for each seed
+HALF_AT = {"m": .1, "deg": 15., "px": 50.}  # how far a part of success is from right that halves a dense reward
 PRINTABLE = "".join(map(chr, range(32, 127)))
 Path = Union[str, os.PathLike[str]]
+
+
+def dense_reward(success: bool, distance: Mapping[str, float]) -> float:
+    """1 for a success. Else .9 times the product of 1 / (1 + d / h) over the parts of `distance` (scenes.StepResult), h being
+    .1 m, 15 degrees, 50 pixels, or 1: within [0, .9], and the less the further any part is from right. The form is lgabench's
+    own, and no run uses it."""
+    reward = .9
+    for part, value in distance.items():
+        reward /= 1 + value / HALF_AT.get(part.rpartition("_")[2], 1.)
+    return 1. if success else reward
+
+
+class _Reward:
+    """What a step is worth: `sparse`, 1 for a success and else 0, or `dense`."""
+
+    def __init__(self, mode: str) -> None:
+        if mode not in ("sparse", "dense"):
+            raise ValueError(f"reward_mode {mode!r}: expected sparse or dense")
+        self.is_dense = mode == "dense"
+
+    def __call__(self, success: bool, distance: Mapping[str, float]) -> float:
+        return dense_reward(success, distance) if self.is_dense else float(success)
 
 
 def observation_space(scenario: Scenario) -> spaces.Dict:
@@ -48,11 +70,11 @@ class _Choice:
             raise ValueError(f"options {sorted(unknown)}: expected split, arm, index, scene_seed")
         index = chosen.get("index")
         if index is None and chosen["split"] == "train":
-            index = random.integers(SEEDS)
+            index = random.integers(INDICES - 1)
         elif index is None:
-            index = self.next if seed is None else seed % SEEDS
-            if seed is not None and seed != index:
-                gymnasium.logger.warn(f"seed {seed} plays scene {index}, as seed {index} does: a split has {SEEDS} scenes")
+            index = self.next if seed is None else seed
+            if index >= INDICES:
+                raise ValueError(f"seed {index}: expected 0 to {INDICES - 1}, as split {chosen['split']} has a scene for each")
         if chosen["split"] != "train":
             self.next = int(index) + 1
         return chosen["split"], chosen["arm"], int(chosen["scene_seed"]), int(index)
@@ -64,7 +86,8 @@ class SceneEnv(gymnasium.Env[dict[str, Any], numpy.typing.NDArray[numpy.float32]
 
     def __init__(self, scenario: Union[str, Scenario, None] = None, *, path: Optional[Path] = None, split: str = "train",
                  engine: str = "mujoco", layout: Optional[str] = None, arm: Optional[str] = None, scene_seed: int = 0,
-                 render_mode: Optional[str] = None) -> None:
+                 reward_mode: str = "sparse", render_mode: Optional[str] = None) -> None:
+        self._reward = _Reward(reward_mode)
         self.scenario = scenario if isinstance(scenario, Scenario) else Scenario(scenario, path=path)
         self.environment = Environment(self.scenario, engine, layout)
         self.render_mode = render_mode
@@ -95,8 +118,8 @@ class SceneEnv(gymnasium.Env[dict[str, Any], numpy.typing.NDArray[numpy.float32]
         metres = self.to_metres(action)
         self._ready = False
         result = self.environment.step(metres)
-        return (self._seen(result.observation), float(result.success), True, False,
-                {"is_success": result.success, "failure": result.failure})
+        return (self._seen(result.observation), self._reward(result.success, result.distance), True, False,
+                {"is_success": result.success, "failure": result.failure, "distance": result.distance})
 
     def expert_action(self) -> numpy.typing.NDArray[numpy.float32]:
         """The oracle's, within [-1, 1]."""
@@ -124,8 +147,9 @@ class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
     def __init__(self, scenario: Union[str, Scenario, None] = None, num_envs: int = 1, *, path: Optional[Path] = None,
                  split: str = "train", engine: str = "mujoco", layout: Optional[str] = None, arm: Optional[str] = None,
                  scene_seed: int = 0, threads: Optional[int] = None,
-                 autoreset_mode: Union[AutoresetMode, str] = AutoresetMode.SAME_STEP,
+                 autoreset_mode: Union[AutoresetMode, str] = AutoresetMode.SAME_STEP, reward_mode: str = "sparse",
                  render_mode: Optional[str] = None) -> None:
+        self._reward = _Reward(reward_mode)
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         if self.autoreset_mode == AutoresetMode.NEXT_STEP:
             raise ValueError("autoreset_mode NextStep: an episode is one action, so every second step() would play nothing; "
@@ -166,9 +190,11 @@ class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
             raise RuntimeError(f"step: expected a reset() of environments {late} before it")
         self._ready[:] = False
         utterances = self._utterances
-        batch, success, failures = self.pool.step(self.to_metres(actions))
+        batch, success, failures, distances = self.pool.step(self.to_metres(actions))
         self._batch = batch
-        finals = [{"is_success": bool(success[i]), "failure": failures[i]} for i in range(self.num_envs)]
+        finals = [{"is_success": bool(success[i]), "failure": failures[i], "distance": distances[i]}
+                  for i in range(self.num_envs)]
+        rewards = numpy.array([self._reward(bool(success[i]), distances[i]) for i in range(self.num_envs)])
         infos: dict[str, Any] = {}
         if self.autoreset_mode == AutoresetMode.SAME_STEP:
             for i, final in enumerate(finals):
@@ -179,7 +205,7 @@ class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
         else:
             for i, final in enumerate(finals):
                 infos = self._add_info(infos, final, i)
-        return (self._observations(), success.astype(numpy.float64), numpy.ones(self.num_envs, bool),
+        return (self._observations(), rewards, numpy.ones(self.num_envs, bool),
                 numpy.zeros(self.num_envs, bool), infos)
 
     def expert_actions(self) -> numpy.typing.NDArray[numpy.float32]:

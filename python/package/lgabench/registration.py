@@ -17,6 +17,7 @@ def names() -> dict[str, str]:
 
 
 def register() -> None:
+    """Adds them all, once."""
     for scenario, name in names().items():
         _add(name, {"scenario": scenario})
     _add("lgabench/own-v1", {})

@@ -17,6 +17,7 @@ from lgabench_method.values import selection as _selection
 
 Numbers = numpy.typing.NDArray[numpy.float64]
 SPLITS = ("train", "dev", "test")
+INDICES, SEEDS = 2**31, 2**64  # scenes of a split, and seeds of its scenes: from 0 on, as many as there are
 
 
 @dataclass(frozen=True)
@@ -104,18 +105,28 @@ class Scenario:
 
 
 class StepResult(NamedTuple):
-    """What an action led to. `failure`: "none", or a word of docs/protocol.md; `came_to_rest`: else it was cut off."""
+    """What an action led to. `failure`: "none", or a word of docs/protocol.md; `came_to_rest`: else it was cut off.
+    `distance`: how far each part of success is from being right, 0 where it is; all 0 in a success. The name ends with the
+    unit, _m, _deg or _px (docs/python.md has the parts); one without is 0 or 1."""
     observation: Observation
     success: bool
     failure: str
     came_to_rest: bool
+    distance: dict[str, float]
+
+
+def _expect(name: str, value: int, count: int) -> None:
+    if not 0 <= value < count:
+        raise ValueError(f"{name} {value}: expected 0 to {count - 1}")
 
 
 def as_scenario(scenario: Union[str, Scenario]) -> Scenario:
+    """By its id, or as it is."""
     return scenario if isinstance(scenario, Scenario) else Scenario(scenario)
 
 
 def layout_of(scenario: Scenario, layout: Optional[str]) -> str:
+    """A layout of the scenario, by default the usual one; ValueError for another."""
     if layout is not None and layout not in scenario.layouts:
         raise ValueError(f"layout {layout!r}: expected one of {', '.join(scenario.layouts)}")
     return layout or scenario.usual_layout
@@ -146,18 +157,20 @@ class Environment:
               own_scenes: Optional[int] = None) -> Observation:
         """Scene `index`. Test scenes are of an arm (the first if None), with its errors of perception. `seed`: the
         training seed for split train, the scene seed for test. `own_scenes`: of a training seed that has test scenes of
-        its own, as in the suite mobile."""
+        its own, as in the suite mobile. An index is below 2^31, a seed below 2^64, else ValueError."""
         if split not in SPLITS:
             raise ValueError(f"split {split!r}: expected train, dev or test")
-        if not 0 <= index < 2**31:
-            raise ValueError(f"index {index}: expected 0 to 2147483647")
+        _expect("index", index, INDICES)
+        _expect("seed", seed, SEEDS)
+        if own_scenes is not None:
+            _expect("own_scenes", own_scenes, SEEDS)
         *seen, self._rows = self._open().reset(split, arm or self.scenario.arms[0], seed, index, own_scenes)
         return _observation(seen)
 
     def step(self, action: numpy.typing.ArrayLike) -> StepResult:
         """Carries out an action, in metres and unit vectors. A second one goes on from the state that was reached."""
-        (*seen, self._rows), success, failure, at_rest = self._open().step(numpy.ascontiguousarray(action, numpy.float64))
-        return StepResult(_observation(seen), success, failure, at_rest)
+        (*seen, self._rows), *led_to = self._open().step(numpy.ascontiguousarray(action, numpy.float64))
+        return StepResult(_observation(seen), *led_to)
 
     def expert_action(self, instance: Optional[int] = None) -> Numbers:
         """The oracle's action in the present state; with an instance's id, as if that were the target."""
@@ -220,28 +233,36 @@ class Pool:
 
     def reset(self, split: str, indices: Sequence[int], *, arms: Optional[Sequence[str]] = None,
               seeds: Optional[Sequence[int]] = None, at: Optional[Sequence[int]] = None) -> Batch:
-        """Begins scene indices[i] in environment at[i] (all, in order, if None)."""
+        """Begins scene indices[i] in environment at[i] (all, in order, if None); indices and seeds as in
+        Environment.reset()."""
         at = range(len(self)) if at is None else at
+        for index in indices:
+            _expect("index", index, INDICES)
+        for seed in seeds or ():
+            _expect("seed", seed, SEEDS)
         return Batch(*self._pool.reset(list(at), split, list(arms or [self.scenario.arms[0]] * len(at)),
                                        list(seeds or [0] * len(at)), list(indices)))
 
     def step(self, actions: numpy.typing.ArrayLike, at: Optional[Sequence[int]] = None
-             ) -> tuple[Batch, numpy.typing.NDArray[numpy.bool_], list[str]]:
-        """Carries out a row of `actions` in each; -> observations, successes, failures."""
+             ) -> tuple[Batch, numpy.typing.NDArray[numpy.bool_], list[str], list[dict[str, float]]]:
+        """Carries out a row of `actions` in each; -> observations, successes, failures, distances (StepResult)."""
         at = range(len(self)) if at is None else at
-        seen, success, failures, _ = self._pool.step(list(at), numpy.ascontiguousarray(actions, numpy.float64))
-        return Batch(*seen), success.view(numpy.bool_), failures
+        seen, success, failures, _, distances = self._pool.step(list(at), numpy.ascontiguousarray(actions, numpy.float64))
+        return Batch(*seen), success.view(numpy.bool_), failures, distances
 
     def expert_actions(self) -> Numbers:
+        """The oracle's, a row for each environment."""
         actions: Numbers = self._pool.expert_actions(list(range(len(self))))
         return actions
 
     @property
     def utterances(self) -> list[str]:
+        """The present scenes' commands."""
         utterances: list[str] = self._pool.utterances
         return utterances
 
     @property
     def scene_hashes(self) -> list[str]:
+        """As Environment.scene_hash."""
         hashes: list[str] = self._pool.scene_hashes
         return hashes
