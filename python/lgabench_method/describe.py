@@ -8,6 +8,8 @@ import site
 import sys
 import sysconfig
 
+from lgabench_method import installed
+
 
 class NoMethod(Exception):
     """The file has no such method; one line for a person."""
@@ -43,11 +45,11 @@ def _imports(tree):
     return names
 
 
-def _versions(tree):
-    """Versions of the distributions that these modules come from; the interpreter's own modules have its version."""
+def _versions(modules):
+    """Versions of the distributions that they come from; the interpreter's own modules have its version."""
     owners = importlib.metadata.packages_distributions()
     versions = {"python": ".".join(map(str, sys.version_info[:3]))}
-    for module in sorted(_imports(tree) | {"numpy"}):
+    for module in sorted(modules | {"numpy"}):
         for owner in owners.get(module, []):
             versions[owner] = importlib.metadata.version(owner)
     return versions
@@ -133,6 +135,10 @@ def describe(written):
         json.dumps(options, allow_nan=False, sort_keys=True)
     except (TypeError, ValueError) as error:
         raise NoMethod(f"{file}: options: expected values that JSON has: {error}") from error
+    site_packages = installed.site_of(real)
+    own = {installed.module_of(site_packages, real).partition(".")[0]} if site_packages else set()
+    beside = ({path.relative_to(site_packages).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
+               for path in installed.files_of(site_packages, real)} if site_packages else _siblings(real.parent, tree, {real}))
     declares = found.get("questionnaire", False)
     if not isinstance(declares, bool):
         raise NoMethod(f"{file}: questionnaire: expected True or False")
@@ -145,4 +151,4 @@ def describe(written):
             "questionnaire": declares,
             "selects_alone": kind == "method" and "learn" not in functions and not classes[class_name].bases,
             "sha256": hashlib.sha256(source).hexdigest(),
-            "versions": {**_versions(tree), **_siblings(real.parent, tree, {real})}}
+            "versions": {**_versions(_imports(tree) | own), **beside}}

@@ -12,7 +12,7 @@ import sysconfig
 import time
 import traceback
 
-from lgabench_method import FeatureSpace, Needs, RandomStream, Refused, Services, Shown, values
+from lgabench_method import FeatureSpace, Needs, RandomStream, Refused, Services, Shown, installed, values
 from lgabench_method.frames import MOST, Malformed
 
 PROTOCOL = 1
@@ -129,10 +129,10 @@ class _Source(importlib.machinery.SourceFileLoader):
 
 class _Beside:
     """Finds modules in the method's folder, and in packages there, by their names: a folder that holds a run cannot be
-    listed. `versions`: as describe() gives them, with the modules' hashes."""
+    listed. `versions`: as describe() gives them, with the modules' hashes; `known`: it finds those alone."""
 
-    def __init__(self, folder, versions):
-        self.folder, self.versions, self.packages = folder, versions, set()
+    def __init__(self, folder, versions, known=False):
+        self.folder, self.versions, self.known, self.packages = folder, versions, known, set()
 
     def find_spec(self, name, path=None, target=None):
         for folder in [self.folder] if path is None else self.packages.intersection(map(pathlib.Path, path)):
@@ -140,16 +140,25 @@ class _Beside:
             for file, inside in ((package.with_suffix(".py"), None), (package / "__init__.py", [str(package)])):
                 if not file.is_file():
                     continue
+                sha256 = self.versions.get(file.relative_to(self.folder).as_posix())
+                if self.known and sha256 is None:
+                    continue
                 if inside:
                     self.packages.add(package)
-                loader = _Source(name, file, self.versions.get(file.relative_to(self.folder).as_posix()))
+                loader = _Source(name, file, sha256)
                 return importlib.util.spec_from_file_location(name, file, loader=loader, submodule_search_locations=inside)
         return None
 
 
 def load(file, name, sha256, versions):
-    """The class of that name; the file is run, whose folder is where it imports from first."""
+    """The class of that name; the file is run, whose folder is where it imports from first. One of an installed package is
+    imported as that package's, from its source."""
     file = pathlib.Path(file)
+    if folder := installed.site_of(file):
+        if str(folder) not in sys.path:
+            sys.path.append(str(folder))
+        sys.meta_path.insert(sys.meta_path.index(importlib.machinery.PathFinder), _Beside(folder, versions, known=True))
+        return getattr(importlib.import_module(installed.module_of(folder, file)), name)
     sys.path.insert(0, str(file.parent))
     sys.meta_path.insert(sys.meta_path.index(importlib.machinery.PathFinder), _Beside(file.parent, versions))
     spec = importlib.util.spec_from_file_location(file.stem, file, loader=_Source(file.stem, file, sha256))

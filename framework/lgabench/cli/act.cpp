@@ -57,7 +57,7 @@ Observation read_observation(PictureSize size, const JsonReader& instances) {
 PluginInfo plugin_of(const JsonReader& job, const KeptPolicy& kept) {
   std::vector<fs::path> paths;
   for (const std::string& path : job.at("plugin_path").strings()) paths.emplace_back(path);
-  Catalogue catalogue = scan_plugins(plugin_directories(paths));
+  Catalogue catalogue = plugins_at(paths, job.at("python").string());
   if (const std::string written = job.at("method").string(); !written.empty())
     with_python_method(written, job.at("python").string(), catalogue);
   const PluginInfo& plugin = catalogue.find("method", kept.method);

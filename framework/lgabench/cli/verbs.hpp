@@ -92,7 +92,7 @@ inline CLI::Validator one_of(std::string what, std::vector<std::string> known) {
 }
 
 /// What --plugin-path of a verb takes that finds its plugins with plugins_at() (host/python_method.hpp).
-inline constexpr const char* any_plugin = "a directory, a .so file, or FILE.py:CLASS";
+inline constexpr const char* any_plugin = "a directory, a site-packages folder, a .so file, or FILE.py:CLASS";
 
 /// "x.so: no such file or directory" of a word that names a plugin's file or a directory of plugins, none of which is
 /// there; else "".

@@ -16,6 +16,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/process.hpp>
 #include <lgabench/core/scratch.hpp>
+#include <lgabench/host/installed_methods.hpp>
 #include <lgabench/host/reach.hpp>
 #include <lgabench/plugin/reader.hpp>
 
@@ -127,8 +128,9 @@ void check_is_readable(const fs::path& file) {
 
 // The descriptor that the file holds, by its absolute name, with where its interpreter reads. That is asked first,
 // without the file: its reader then reaches nothing else.
-Json description_of(const std::string& interpreter, const std::string& file) {
+Json description_of(const std::string& interpreter, const std::string& file, const fs::path& site) {
   Json python = parse_json(answer_of(interpreter, "--interpreter", nullptr), interpreter);
+  if (!site.empty() && python.is_object()) python["reads"].push_back(site.string());
   const JsonReader reader(python, interpreter);
   reader.at("reads").strings();
   Reach reach = system_reach();
@@ -150,8 +152,9 @@ std::vector<std::string> classes_of(const fs::path& file) {
   return names;
 }
 
-// Once; @throws PluginError for an id that another plugin of the kind has.
-void add(const PluginInfo& plugin, Catalogue& catalogue) {
+}  // namespace
+
+void add_once(const PluginInfo& plugin, Catalogue& catalogue) {
   const auto same_id = [&plugin](const PluginInfo& p) { return p.kind == plugin.kind && p.id == plugin.id; };
   const auto known = std::find_if(catalogue.plugins.begin(), catalogue.plugins.end(), same_id);
   if (known == catalogue.plugins.end())
@@ -161,14 +164,17 @@ void add(const PluginInfo& plugin, Catalogue& catalogue) {
         fmt::format("{}: {} is also the id of {}", plugin.file.string(), plugin.id, known->file.string()));
 }
 
-}  // namespace
-
 bool is_python_method(const std::string& word) {
   const std::string written = row_words(word).front();
   return written.find(".py:") != written.npos || fs::path(written).extension() == ".py";
 }
 
 PluginInfo describe_python(const std::string& written, const std::string& interpreter) {
+  return describe_python(written, interpreter, {}, "");
+}
+
+PluginInfo describe_python(const std::string& written, const std::string& interpreter, const fs::path& site,
+                           const std::string& id) {
   PluginInfo plugin;
   const bool has_class = written.find(".py:") != written.npos;
   check_is_readable(has_class ? written.substr(0, written.rfind(':')) : written);
@@ -179,11 +185,11 @@ PluginInfo describe_python(const std::string& written, const std::string& interp
         fmt::format("{0}: expected {0}:CLASS; it has: {1}", written, fmt::join(classes_of(written), ", ")));
   }
   try {
-    const Json json = description_of(interpreter, fs::absolute(written).string());
+    const Json json = description_of(interpreter, fs::absolute(written).string(), site);
     const JsonReader reader(json, written);
     plugin.file = reader.at("file").string();
     plugin.kind = reader.at("kind").string();
-    plugin.id = reader.at("id").string();
+    plugin.id = id.empty() ? reader.at("id").string() : id;
     plugin.version = reader.at("version").string();
     plugin.summary = reader.at("summary").string();
     plugin.asks = reader.at("asks").string();
@@ -217,7 +223,7 @@ std::string with_python_method(const std::string& row, const std::string& interp
   const PluginInfo plugin = describe_python(written, interpreter);
   if (plugin.kind != "method")
     throw PluginError(fmt::format("{}: expected a method, it is a {}", written, plugin.kind));
-  add(plugin, catalogue);
+  add_once(plugin, catalogue);
   return plugin.id + row.substr(written.size());
 }
 
@@ -226,8 +232,11 @@ Catalogue plugins_at(const std::vector<fs::path>& paths, const std::string& inte
   const auto is_other = [](const fs::path& path) { return path.string().find(".py:") == std::string::npos; };
   std::copy_if(paths.begin(), paths.end(), std::back_inserter(others), is_other);
   in_python.erase(std::remove_if(in_python.begin(), in_python.end(), is_other), in_python.end());
-  Catalogue catalogue = scan_plugins(plugin_directories(others));
-  for (const fs::path& path : in_python) add(describe_python(path.string(), interpreter), catalogue);
+  const std::vector<fs::path> directories = plugin_directories(others);
+  Catalogue catalogue = scan_plugins(directories);
+  for (const fs::path& directory : directories)
+    if (is_site_packages(directory)) add_installed_methods(directory, interpreter, catalogue);
+  for (const fs::path& path : in_python) add_once(describe_python(path.string(), interpreter), catalogue);
   add_axes(catalogue);
   return catalogue;
 }

@@ -54,12 +54,19 @@ std::vector<fs::path> plugin_directories(const std::vector<fs::path>& extra) {
   return all;
 }
 
+bool is_site_packages(const fs::path& directory) {
+  std::error_code error;
+  for (fs::directory_iterator it(directory, error), end; !error && it != end; it.increment(error))
+    if (it->path().extension() == ".dist-info") return true;
+  return false;
+}
+
 Catalogue scan_plugins(const std::vector<fs::path>& directories) {
   Catalogue catalogue;
   std::set<fs::path> seen;  // a directory named twice is one directory
   for (const fs::path& directory : directories) {
     std::error_code error;
-    if (!seen.insert(fs::weakly_canonical(directory, error)).second) continue;
+    if (!seen.insert(fs::weakly_canonical(directory, error)).second || is_site_packages(directory)) continue;
     std::vector<fs::path> files;
     const bool is_file = directory.extension() == ".so" && fs::is_regular_file(directory);
     if (is_file) files.push_back(directory);

@@ -58,7 +58,11 @@ struct Catalogue {
 /// command line). Directories, or .so files.
 std::vector<fs::path> plugin_directories(const std::vector<fs::path>& extra = {});
 
-/// Reads each *.so of the directories, in their order and by name within each; one may also be a .so itself. What is
+/// A folder that Python packages are installed into: it has their *.dist-info.
+bool is_site_packages(const fs::path& directory);
+
+/// Reads each *.so of the directories, in their order and by name within each; one may also be a .so itself, and one of
+/// installed Python packages is left out (host/installed_methods.hpp). What is
 /// refused does not stop the rest, and a directory without a *.so is refused;
 /// of two with the same kind and id the later is refused.
 Catalogue scan_plugins(const std::vector<fs::path>& directories);

@@ -4,8 +4,10 @@ import pathlib
 import shutil
 import sys
 
+from lgabench_method import installed
+
 PROGRAM = pathlib.Path(__file__).with_name("_install") / "bin" / "lgabench"
-PLAYS = ("run", "check-plugin", "verify")
+TAKES_PYTHON = ("run", "check-plugin", "verify", "list", "info")
 
 
 def typed() -> str:
@@ -18,12 +20,15 @@ def typed() -> str:
 
 
 def main() -> None:
+    """Becomes the program; exits with its status."""
     words = sys.argv[1:]
     if words[:1] == ["answers"]:  # of a harness's log too
         from lgabench import evals
         sys.exit(evals.answers(words[1:]))
-    if words and words[0] in PLAYS and not any(word.split("=")[0] == "--python" for word in words):
+    if words and words[0] in TAKES_PYTHON and not any(word.split("=")[0] == "--python" for word in words):
         words = [*words, "--python", sys.executable]
+        if folders := installed.folders():
+            os.environ["LGABENCH_PLUGIN_PATH"] = ":".join(filter(None, [os.environ.get("LGABENCH_PLUGIN_PATH"), *folders]))
     os.execv(PROGRAM, [typed(), *words])
 
 

@@ -12,7 +12,7 @@ from typing import Any, Optional, Sequence, Union
 import numpy
 import numpy.typing
 
-from lgabench_method import Observation, Selection
+from lgabench_method import Observation, Selection, installed
 from lgabench_method import values as _values
 
 Path = Union[str, os.PathLike[str]]
@@ -64,6 +64,7 @@ class Policy:
         return answer
 
     def close(self) -> None:
+        """Ends the process; every later act() raises RuntimeError."""
         if self._process is not None:
             self._process.communicate()
             self._process = None
@@ -82,7 +83,8 @@ def load_policy(cell: Path, method: str = "", *, plugin_path: Sequence[Path] = (
     folder = pathlib.Path(cell)
     recorded = json.loads((folder / "cell.json").read_text())
     commands = json.loads((folder / "selection.json").read_text())["commands"]
-    job = {"cell": str(folder), "method": method, "python": python, "plugin_path": [os.fspath(one) for one in plugin_path]}
+    paths = [*(os.fspath(one) for one in plugin_path), *(installed.folders() if python == sys.executable else [])]
+    job = {"cell": str(folder), "method": method, "python": python, "plugin_path": paths}
     process = subprocess.Popen([PROGRAM, "act"], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
     selections = {one["utterance"]: _values.selection({name: value for name, value in one["selection"].items()
                                                        if name != "cost"}) for one in commands}
