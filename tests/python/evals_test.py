@@ -4,6 +4,7 @@ LGABENCH_FULL: in the harnesses themselves, where they are installed (last tried
 """
 import http.server
 import importlib.util
+import itertools
 import json
 import os
 import pathlib
@@ -194,6 +195,73 @@ for form in "flat", "structured":
 
 def installed(package):
     return FULL and importlib.util.find_spec(package)
+
+
+class Batches(Suites):
+    """`lgabench answers --batch`, and what an API's batch gives back."""
+
+    def asked(self, suite, form, *more):
+        self.call("answers", suite, "--form", form, "--questions", "batch.jsonl", "--batch", "--model", "m", *more)
+        return [json.loads(line) for line in (self.dir / "batch.jsonl").read_text().splitlines()]
+
+    def output(self, requests):
+        return [{"id": f"batch_req_{i}", "custom_id": one["custom_id"], "error": None, "response": {
+            "status_code": 200, "request_id": str(i), "body": {"id": "c", "object": "chat.completion", "model": "m-2026", "choices": [
+                {"index": 0, "message": {"role": "assistant", "content": reply_to(one["body"]["messages"][1]["content"])},
+                 "finish_reason": "stop"}], "usage": {"total_tokens": 9}}}} for i, one in enumerate(requests)]
+
+    def keep(self, lines, *more, expect=0):
+        (self.dir / "out.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+        done = subprocess.run([PROGRAM, "answers", "--from", "out.jsonl", "--model", "m", "--cassette", "kept.jsonl", *more],
+                              capture_output=True, text=True, cwd=self.dir)
+        self.assertEqual(done.returncode, expect, done.stderr)
+        return done
+
+    def test_its_replies_score_as_those_of_the_server(self):
+        for make, form in itertools.product((self.suite, self.fetch), evals.FORMS):
+            suite = make()
+            requests = self.asked(suite, form)
+            self.assertEqual({(one["method"], one["url"]) for one in requests}, {("POST", "/v1/chat/completions")})
+            self.assertEqual(len({one["custom_id"] for one in requests}), len(requests))
+            for one, question in zip(requests, evals.questions(suite, form), strict=True):
+                self.assertEqual(one["body"], {"model": "m", "temperature": 0, "messages": [
+                    {"role": "system", "content": question["system"]}, {"role": "user", "content": question["user"]}]})
+            self.assertIn("replies of m", self.keep(reversed(self.output(requests))).stdout)
+            kept = self.select("--suite", suite, "--answers", "cassette:kept.jsonl")[form]
+            asked = self.of_the_program(suite)[form]
+            clock = {name for name in asked if name.endswith("_s") or name in ("source", "tokens", "queries")}
+            self.assertEqual({name: value for name, value in kept.items() if name not in clock},
+                             {name: value for name, value in asked.items() if name not in clock})
+            (self.dir / "kept.jsonl").unlink()
+            (self.dir / "asked.jsonl").unlink()
+
+    def test_lines_that_failed_are_named_and_counted_and_asked_for_again(self):
+        suite = self.suite()
+        requests = self.asked(suite, "flat")
+        lines = self.output(requests)
+        lines[0] = {**lines[0], "response": None, "error": {"code": "batch_expired", "message": "not done in 24 h"}}
+        lines[1]["response"].update(status_code=429, body={"error": {"message": "too many"}})
+        lines[2]["response"]["body"]["choices"][0]["finish_reason"] = "length"
+        lines[3]["response"]["body"] = {}
+        whole = self.output(requests)
+        said = self.keep(lines[:-1], expect=3).stderr
+        for why in ("the server says: not done in 24 h", "status 429: too many", "finish_reason is length", "expected a member \"choices\"", "no reply in out.jsonl"):
+            self.assertEqual(len(re.findall(f"no answer: .*{re.escape(why)}", said)), 1, said)
+        self.assertIn("5 questions have no answer", said)
+        self.keep([*lines[:-1], *whole[:4], whole[-1]])  # a second batch's output behind the first's
+
+    def test_what_is_no_batch_is_refused_in_a_line(self):
+        suite = self.suite()
+        line = self.output(self.asked(suite, "flat"))[0]
+        for custom_id in "1", f"{suite}/loud/{line['custom_id'][-16:]}", "/flat/x":
+            self.assertIn("out.jsonl: line 1: /custom_id: expected SUITE/FORM/ID",
+                          self.keep([{**line, "custom_id": custom_id}], expect=2).stderr)
+        for words in (["--batch"], ["--model", "m"], ["--request", "{}"]):
+            done = subprocess.run([PROGRAM, "answers", suite, "--questions", "q.jsonl", *words], capture_output=True, text=True, cwd=self.dir)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("--batch", done.stderr)
+        with_effort = self.asked(suite, "flat", "--request", '{"temperature": null, "reasoning_effort": "low"}')
+        self.assertEqual(set(with_effort[0]["body"]), {"model", "messages", "reasoning_effort"})
 
 
 class Harnesses(Suites):

@@ -11,18 +11,18 @@ namespace {
 
 constexpr std::uint64_t training_seed = 1000003;
 
-struct Placed {
+struct InView {
   std::size_t type, texture;
   bool meant;
 };
-using Seen = std::vector<Placed>;  // a scene's objects, but for places
+using Seen = std::vector<InView>;  // a scene's objects, but for places
 
 struct Kept {
   std::vector<char> types, textures;
 
   bool exactly(const Seen& scene) const {
     return std::all_of(scene.begin(), scene.end(),
-                       [this](const Placed& one) { return (types[one.type] && textures[one.texture]) == one.meant; });
+                       [this](const InView& one) { return (types[one.type] && textures[one.texture]) == one.meant; });
   }
   auto won(const std::vector<Seen>& scenes) const {
     return std::count_if(scenes.begin(), scenes.end(), [this](const Seen& scene) { return exactly(scene); });

@@ -40,11 +40,11 @@ ChatReply complete(ChatClient& client, const Json& request) {
   }
 }
 
+}  // namespace
+
 Json messages_of(const Prompt& prompt) {
   return {{{"role", "system"}, {"content", prompt.system}}, {{"role", "user"}, {"content", prompt.user}}};
 }
-
-}  // namespace
 
 ChatLanguageModel::ChatLanguageModel(Cassette& cassette, ChatClient* client, ChatOptions options)
     : cassette_(cassette),

@@ -45,6 +45,9 @@ struct ChatOptions {
   std::function<void(bool begins)> in_line = {};          // told where it waits for another process to have asked
 };
 
+/// A prompt as a request has it.
+Json messages_of(const Prompt& prompt);
+
 /// Asks what the cassette does not hold, if there is a client; provenance live once a reply came from it, else
 /// cassette.
 class ChatLanguageModel : public LanguageModel {

@@ -7,13 +7,13 @@
 #include <atomic>
 #include <cerrno>
 #include <chrono>
-#include <cmath>
 #include <mutex>
 #include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include <lgabench/abstraction/completion.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/terminal.hpp>
 
@@ -124,81 +124,25 @@ std::string without_key(std::string text, const std::string& key) {
   return text;
 }
 
-// The server's words for what went wrong, {"error": {"message"}} or {"error": text}; empty without.
-std::string error_in(const Json& body) {
-  const Json error = body.is_object() ? body.value("error", Json()) : Json();
-  const Json message = error.is_object() ? error.value("message", Json()) : error;
-  return message.is_string() ? message.get<std::string>() : "";
-}
-
 // An error in the place of a reply, as from a model that is still loading: another attempt may find one, unless the
 // error's code says otherwise. Empty for what is to be read.
 std::string passing_error(const Response& response) {
   const Json body = response.status == 200 ? json_or_null(response.body) : Json();
   if (!body.is_object() || body.contains("choices")) return "";
   const Json error = body.value("error", Json()), code = error.is_object() ? error.value("code", Json()) : Json();
-  return code.is_number_integer() && !may_pass(code.get<long>()) ? "" : error_in(body);
+  return code.is_number_integer() && !may_pass(code.get<long>()) ? "" : completion_error(body);
 }
 
 // What went wrong, in a line.
 std::string complaint(const Response& response, const std::string& key) {
   std::string text = response.problem;
   if (response.status != 0) {
-    std::string message = error_in(json_or_null(response.body));
+    std::string message = completion_error(json_or_null(response.body));
     if (message.empty()) message = response.body;
     text = fmt::format("status {}: {}", response.status, without_key(message, key).substr(0, shown));
   }
   std::replace(text.begin(), text.end(), '\n', ' ');
   return without_key(text, key);
-}
-
-// A message's content: a text, or a list of parts.
-std::string content_of(const JsonReader& message) {
-  const JsonReader content = message.at("content");
-  std::string text;
-  if (content.json().is_array()) {
-    for (const JsonReader& part : content.elements())
-      if (part.has("text")) text += part.at("text").string();
-  } else if (!content.json().is_null()) {
-    text = content.string();
-  }
-  return text;
-}
-
-// Servers count in ways of their own; no answer depends on it.
-long long tokens_of(const Json& body) {
-  const Json usage = body.value("usage", Json());
-  const Json total = usage.is_object() ? usage.value("total_tokens", Json()) : Json();
-  constexpr double most = 1e12;
-  const double tokens = total.is_number() ? total.get<double>() : 0;
-  return tokens >= 0 && tokens <= most ? std::llround(tokens) : 0;
-}
-
-// Words for a finish_reason differ from server to server: those are refused that say that the content is not whole.
-ChatReply read_completion(const std::string& body) {
-  const Json json = parse_json(body, "language model's reply");
-  const JsonReader reader(json, "language model's reply");
-  if (!reader.has("choices"))
-    if (const std::string says = error_in(json); !says.empty()) throw NoAnswer("the server says: " + says);
-  const auto choices = reader.at("choices").elements();
-  if (choices.size() != 1) reader.at("choices").fail("one choice");
-  const Json reason = choices[0].has("finish_reason") ? choices[0].at("finish_reason").json() : Json();
-  for (const char* cut : {"length", "content_filter"})
-    if (reason == cut) throw NoAnswer(fmt::format("the reply was cut off: finish_reason is {}", cut));
-  for (const char* call : {"tool_calls", "function_call"})
-    if (reason == call)
-      throw NoAnswer(fmt::format("the model called a tool, and none was offered: finish_reason is {}", call));
-  const JsonReader message = choices[0].at("message");
-  const std::string text = content_of(message);
-  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
-    const bool says = message.has("refusal") && message.at("refusal").json().is_string();
-    if (says) throw NoAnswer("the model refused: " + message.at("refusal").string());
-    for (const char* thoughts : {"reasoning_content", "reasoning"})
-      if (message.has(thoughts) && message.at(thoughts).json().is_string() && !message.at(thoughts).string().empty())
-        throw NoAnswer(fmt::format("the reply is empty: the model only thought, in {}", thoughts));
-    throw NoAnswer("the reply is empty");
-  }
-  return {text, tokens_of(json), 0};
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <lgabench/abstraction/chat_model.hpp>
+#include <lgabench/abstraction/completion.hpp>
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/files.hpp>
@@ -25,6 +26,7 @@ const std::vector<std::string> forms{"flat", "structured"};
 struct AnswersArguments {
   std::string suite, form = forms.front(), model, request;
   fs::path questions, from, cassette;
+  bool batch = false;
 };
 
 template <class Use>
@@ -42,9 +44,18 @@ std::string id_of(const std::string& system, const std::string& user) {
   return sha256(canonical({{"system", system}, {"user", user}})).substr(0, digits);
 }
 
+// A line of a batch file, as OpenAI's API and those that follow it take it. Its name is all that comes back.
+Json batch_line(const AnswersArguments& a, const AskedModel& model, const std::string& id, const Prompt& prompt) {
+  return {{"custom_id", fmt::format("{}/{}/{}", a.suite, a.form, id)},
+          {"method", "POST"},
+          {"url", "/v1/chat/completions"},
+          {"body", model.request(messages_of(prompt))}};
+}
+
 // Each question once, a line each: what names it, what it is about, and the two messages that a model is shown.
 void write_questions(const AnswersArguments& a) {
   const bool structured = a.form == "structured";
+  const AskedModel model = a.batch ? asked_model(a.model, a.request) : AskedModel{};
   const PromptTemplate yes_or_no, of_meaning("meaning.txt");
   std::string lines;
   std::set<std::string> seen;
@@ -52,14 +63,12 @@ void write_questions(const AnswersArguments& a) {
     const auto add = [&](const Prompt& prompt, const std::string& about) {
       const std::string id = id_of(prompt.system, prompt.user);
       if (!seen.insert(id).second) return;
-      lines += canonical({{"suite", a.suite},
-                          {"form", a.form},
-                          {"id", id},
-                          {"command", command.utterance},
-                          {"about", about},
-                          {"system", prompt.system},
-                          {"user", prompt.user}}) +
-               '\n';
+      const Json line =
+          a.batch ? batch_line(a, model, id, prompt) : Json{{"suite", a.suite},   {"form", a.form},
+                                                            {"id", id},           {"command", command.utterance},
+                                                            {"about", about},     {"system", prompt.system},
+                                                            {"user", prompt.user}};
+      lines += canonical(line) + '\n';
     };
     if (structured) add(of_meaning.fill(command, space), "what it means");
     for (const Question& question : feature_questions(command, space))
@@ -70,6 +79,24 @@ void write_questions(const AnswersArguments& a) {
   to_stdout("{}: {} questions\n", a.questions.string(), seen.size());
 }
 
+// @throws NoAnswer for a line that failed.
+ChatReply reply_of_batch(const JsonReader& line) {
+  if (line.has("error") && !line.at("error").json().is_null()) {
+    const std::string says = completion_error(line.json());
+    throw NoAnswer("the server says: " + (says.empty() ? canonical(line.at("error").json()) : says));
+  }
+  if (!line.has("response") || line.at("response").json().is_null()) throw NoAnswer("the line has no response");
+  const JsonReader response = line.at("response");
+  const Json body = response.at("body").json();
+  const long long status = response.has("status_code") ? response.at("status_code").integer(0, 1 << 20) : 200;
+  if (status != 200) throw NoAnswer(fmt::format("status {}: {}", status, completion_error(body)));
+  try {
+    return read_completion(canonical(body));
+  } catch (const InputError& e) {
+    throw NoAnswer(e.what());
+  }
+}
+
 // In place of a server: says of a question what the file has. Asked again, as after a reply that cannot be read, it
 // says the same.
 class GivenReplies : public ChatClient {
@@ -78,6 +105,10 @@ class GivenReplies : public ChatClient {
     int number = 0;
     for (const Json& line : parse_json_lines(read_file(file), file.string())) {
       const JsonReader reader(line, fmt::format("{}: line {}", file.string(), ++number));
+      if (reader.has("custom_id")) {
+        read_batch_line(reader);
+        continue;
+      }
       const std::string form = reader.at("form").string();
       if (form != forms[0] && form != forms[1]) reader.at("form").fail("flat or structured");
       asked_.insert({reader.at("suite").string(), form});
@@ -87,26 +118,49 @@ class GivenReplies : public ChatClient {
       ChatReply reply{reader.at("reply").string()};
       if (reader.has("tokens")) reply.tokens = reader.at("tokens").integer(0, 1LL << 40);
       if (reader.has("seconds")) reply.seconds = reader.at("seconds").number();
-      const auto [there, is_new] = replies_.insert({id, std::move(reply)});
-      if (!is_new && there->second.text != line.at("reply")) reader.fail("one reply to each question");
+      keep(reader, id, std::move(reply));
     }
     if (asked_.empty()) throw InputError(fmt::format("{}: expected a line for each question", file.string()));
   }
 
   ChatReply complete(const Json& request) override {
     const Json& messages = request.at("messages");
-    const auto found = replies_.find(id_of(messages.at(0).at("content"), messages.at(1).at("content")));
-    if (found == replies_.end()) throw NoAnswer(fmt::format("no reply in {}", file_.string()));
-    return found->second;
+    const std::string id = id_of(messages.at(0).at("content"), messages.at(1).at("content"));
+    const auto found = replies_.find(id);
+    if (found != replies_.end()) return found->second;
+    const auto why = failed_.find(id);
+    throw NoAnswer(why == failed_.end() ? fmt::format("no reply in {}", file_.string()) : why->second);
   }
 
   /// Suite and form of its questions.
   const std::set<std::pair<std::string, std::string>>& asked() const { return asked_; }
 
  private:
+  void keep(const JsonReader& line, const std::string& id, ChatReply reply) {
+    const auto [there, is_new] = replies_.insert({id, reply});
+    if (!is_new && there->second.text != reply.text) line.fail("one reply to each question");
+  }
+
+  // {"custom_id", "response": {"status_code", "body"}, "error"}: a line that failed has an error, another status, or
+  // nothing to read in its body. A later line of the same question, as of a second batch, may have its reply.
+  void read_batch_line(const JsonReader& line) {
+    const std::string name = line.at("custom_id").string();
+    const std::size_t of_id = name.rfind('/'), of_form = of_id == name.npos ? name.npos : name.rfind('/', of_id - 1);
+    if (of_form == name.npos || of_form == 0) line.at("custom_id").fail("SUITE/FORM/ID, as --batch writes it");
+    const std::string form = name.substr(of_form + 1, of_id - of_form - 1), id = name.substr(of_id + 1);
+    if (form != forms[0] && form != forms[1]) line.at("custom_id").fail("SUITE/FORM/ID, as --batch writes it");
+    asked_.insert({name.substr(0, of_form), form});
+    try {
+      keep(line, id, reply_of_batch(line));
+    } catch (const NoAnswer& e) {
+      failed_.insert({id, e.what()});
+    }
+  }
+
   fs::path file_;
   std::set<std::pair<std::string, std::string>> asked_;
-  std::map<std::string, ChatReply> replies_;  // by id
+  std::map<std::string, ChatReply> replies_;   // by id
+  std::map<std::string, std::string> failed_;  // why, by id
 };
 
 void keep_replies(const AnswersArguments& a) {
@@ -148,28 +202,35 @@ void add_answers(CLI::App& app, int& exit) {
               "flat: yes or no of each object type and texture; structured: what each command means",
               one_of("form", forms), with_default)
       ->needs(questions);
+  verb.option("--batch", a->batch,
+              "Write a batch file instead, as OpenAI's API takes it: a request for --model in each line")
+      ->needs(questions);
   add_scenario_path(verb);
   verb.below("Replies");
   auto* from = verb.option("--from FILE", a->from,
-                           "The lines of --questions, each with the `reply` that came; with the Python package also a "
-                           "log of Inspect or lm-evaluation-harness")
+                           "The lines of --questions, each with the `reply` that came, or a batch's output; with the "
+                           "Python package also a log of Inspect or lm-evaluation-harness")
                    ->excludes(questions)
                    ->excludes(suite);
   verb.option("--cassette FILE", a->cassette, "The file to append the replies to, for --answers cassette:FILE")
       ->needs(from);
-  verb.option("--model MODEL", a->model, "The model that replied")->needs(from);
+  verb.option("--model MODEL", a->model, "The model that replied; with --batch the one to ask");
   verb.option("--request JSON", a->request,
-              "How its requests differed from lgabench's own, as for lgabench select --answers openai")
-      ->needs(from);
+              "How its requests differ from lgabench's own, as for lgabench select --answers openai");
   verb->footer(
       "A reply without an answer is named and left out; one without a meaning that can be read selects nothing.\n"
       "docs/language-models.md says how harnesses ask.\nExample: lgabench answers words --form structured --questions "
-      "words.jsonl\n         lgabench answers --from replied.jsonl --model M --cassette M.jsonl");
+      "words.jsonl\n         lgabench answers words --batch --model M --questions batch.jsonl\n"
+      "         lgabench answers --from replied.jsonl --model M --cassette M.jsonl");
   verb->callback([a, &exit] {
     if (a->questions.empty() == a->from.empty())
       throw InputError("answers: expected SUITE and --questions FILE, or --from FILE");
     if (!a->from.empty() && (a->model.empty() || a->cassette.empty()))
       throw InputError("answers --from: expected --model MODEL and --cassette FILE too");
+    if (a->from.empty() && a->batch == a->model.empty())
+      throw InputError("answers --questions: expected --batch and --model MODEL, or neither");
+    if (!a->batch && a->from.empty() && !a->request.empty())
+      throw InputError("answers --request: expected --batch or --from with it");
     a->questions.empty() ? keep_replies(*a) : write_questions(*a);
     exit = ok;
   });
