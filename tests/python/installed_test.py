@@ -109,6 +109,14 @@ class Installed(Case):
         actions.write_text(actions.read_text() + "\n")
         self.assertIn("python differs", self.run_of("tiny", "--out", "run", expect=2).stderr)
 
+    def test_listing_imports_neither_module_nor_package(self):
+        """Which would end the process that reads it; its confinement alone would hide a file that is written."""
+        ends = "import os\nos._exit(7)\n"
+        self.install("ending", "tiny = ending.method:Tiny\n", {"ending/__init__.py": ends, "ending/method.py": ends + METHOD})
+        said = self.python("list")
+        self.assertEqual((len(self.listed(said.stdout)), said.stderr), (1, ""))
+        self.run_of("tiny", "--dry-run")
+
     def test_a_folder_is_named_where_no_package_starts_the_program(self):
         self.install_tiny()
         words = ("--python", self.dir / "v/bin/python", "--plugin-path", self.site)
