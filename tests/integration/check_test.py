@@ -143,7 +143,8 @@ class CheckPlugin(Case):
         self.assertIn("no environment", self.call("check-plugin", engine, "--environment", "moon", expect=2).stderr)
 
     def test_shipped_plugins_are_good(self):
-        for name, setting in {"mujoco": (), "lga": ("epochs=5",), "gcbc_dart": ("epochs=2",)}.items():
+        for name, setting in {"mujoco": (), "lga": ("epochs=5",), "gcbc_dart": ("epochs=2",),
+                              "person_rule": ("questions=2", "policy=point")}.items():
             with self.subTest(name):
                 self.assertEqual(self.check(BUILD / f"lib/lgabench/plugins/{name}.so", *setting, expect=0), {})
 

@@ -223,6 +223,15 @@ TEST_F(AnswerLedgerTest, what_nobody_knows_costs_its_questions_alone) {
   EXPECT_EQ(account({{"star"}, {"red"}}).cost.lm_queries, 0);
 }
 
+TEST_F(AnswerLedgerTest, a_person_who_is_shown_objects_is_the_source_where_no_model_is) {
+  say({{"type", "person"},
+       {"how", "accept"},
+       {"command", protocol::to_json(command)},
+       {"object_type", "star"},
+       {"texture", "red"}});
+  EXPECT_EQ(account({{"star"}, {"red"}}).source, "after a person was shown an object");
+}
+
 TEST_F(AnswerLedgerTest, a_person_who_is_shown_objects_makes_any_answer_a_simulated_edit) {
   say(ask_for_hypotheses());
   for (const bool star : {true, false})

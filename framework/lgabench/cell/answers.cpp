@@ -80,19 +80,22 @@ Answers answers_for(const CellJob& job, const Scenario& scenario, ChatClient* se
   if (cell.participant)
     human = std::make_unique<ParticipantAsHuman>(
         read_participant(kept_file(job.answers, cell.participant->sha256, ".json")), scenario);
-  else if (scenario.questions)
-    human = std::make_unique<AskedInScenes>(
-        scenario, cell.demonstrations, cell.method.options.value("questions", 0),
-        [&scenario, &cell](int command, int n) {
-          const int index = n * static_cast<int>(scenario.commands.size()) + command;
-          return placed(find_environment(scenario.environment)
-                            .draw(training_scene(scenario, cell.layout, {}, cell.training_seed, index)));
-        });
   else
-    human = std::make_unique<TruthAsHuman>(scenario.commands);
+    human = people_of(scenario, cell.layout, cell.training_seed, cell.demonstrations, cell.method.options);
   answers.human = std::make_unique<DeclaredHuman>(std::move(human), cell.method.asks);
   answers.truth = declared_truth(scenario.commands, cell.method.asks);
   return answers;
+}
+
+std::unique_ptr<HumanAnswers> people_of(const Scenario& scenario, const std::string& layout,
+                                        std::uint64_t training_seed, int demonstrations, const Json& options) {
+  if (!scenario.questions) return std::make_unique<TruthAsHuman>(scenario.commands);
+  return std::make_unique<AskedInScenes>(
+      scenario, demonstrations, options.value("questions", 0), [&scenario, layout, training_seed](int command, int n) {
+        const int index = n * static_cast<int>(scenario.commands.size()) + command;
+        return placed(
+            find_environment(scenario.environment).draw(training_scene(scenario, layout, {}, training_seed, index)));
+      });
 }
 
 }  // namespace lgabench

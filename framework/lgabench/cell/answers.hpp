@@ -21,4 +21,9 @@ struct Answers {
 Answers answers_for(const CellJob& job, const Scenario& scenario, ChatClient* server,
                     const std::function<void(bool begins)>& in_line);
 
+/// The truth in the place of people: of a scenario with "questions" in the scenes of that layout and training seed, as
+/// often as the method's option `questions` says. `scenario` is borrowed.
+std::unique_ptr<HumanAnswers> people_of(const Scenario& scenario, const std::string& layout,
+                                        std::uint64_t training_seed, int demonstrations, const Json& options);
+
 }  // namespace lgabench

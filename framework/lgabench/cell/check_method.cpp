@@ -13,6 +13,7 @@
 #include <lgabench/abstraction/human.hpp>
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/abstraction/scenes.hpp>
+#include <lgabench/cell/answers.hpp>
 #include <lgabench/cell/check.hpp>
 #include <lgabench/cell/demonstrations.hpp>
 #include <lgabench/cell/evaluator.hpp>
@@ -79,6 +80,7 @@ class TruthfulModel : public LanguageModel {
     }
     return answers;
   }
+  std::vector<Hypothesis> hypotheses(const Command&, const FeatureSpace&) override { return {}; }
   std::string model() const override { return "true distribution"; }
   Provenance provenance() const override { return Provenance::truth; }
   SelectionCost cost() const override { return {}; }
@@ -92,6 +94,10 @@ struct Sight {
   Observation observation;
 };
 
+std::string first_layout(const Scenario& scenario) {
+  return find_task(find_environment(scenario.environment), scenario.task).layouts.front();
+}
+
 // A scenario, and the scenes that the method acts in.
 struct Bench {
   Scenario scenario;
@@ -99,9 +105,7 @@ struct Bench {
   std::unique_ptr<Environment> environment;
   std::vector<Sight> sights;
 
-  Bench(Scenario played, const PluginInfo& engine)
-      : scenario(std::move(played)),
-        layout(find_task(find_environment(scenario.environment), scenario.task).layouts.front()) {
+  Bench(Scenario played, const PluginInfo& engine) : scenario(std::move(played)), layout(first_layout(scenario)) {
     environment = make_environment(scenario, load_engine(engine));
     for (const Arm& arm : scenario.tests)
       for (int i = 0; i < scenes_an_arm; ++i) {
@@ -125,7 +129,7 @@ struct Answering {
       : recorded(scenario, recorded_source(scenario, "recorded", job.plugin.asks == "edit")),
         truthful(scenario.commands),
         model(knows_all(scenario) ? static_cast<LanguageModel&>(recorded) : truthful, always_no),
-        human(std::make_unique<TruthAsHuman>(scenario.commands), job.plugin.asks),
+        human(people_of(scenario, first_layout(scenario), seed, demonstrations, job.options), job.plugin.asks),
         services{model,
                  human,
                  job.options,
@@ -487,27 +491,36 @@ class MethodCheck {
   HostedMethod method_;
 };
 
-// The first scenario that tests commands which were not demonstrated; none where the environment ("": any) has none.
-std::optional<Scenario> with_unseen_commands(const std::string& environment) {
+// The first scenario like that; none where the environment ("": any) has none.
+std::optional<Scenario> first_scenario(const std::string& environment, bool (*is_like_that)(const Scenario&)) {
   for (const std::string& id : scenario_ids()) {
     Scenario scenario = load_scenario(id);
-    if (!environment.empty() && scenario.environment != environment) continue;
-    for (const ScenarioCommand& command : scenario.commands)
-      if (!command.seen) return scenario;
+    if ((environment.empty() || scenario.environment == environment) && is_like_that(scenario)) return scenario;
   }
   return std::nullopt;
 }
+
+// That tests commands which were not demonstrated.
+bool has_unseen_commands(const Scenario& scenario) {
+  return std::any_of(scenario.commands.begin(), scenario.commands.end(),
+                     [](const ScenarioCommand& command) { return !command.seen; });
+}
+
+// Whose people may be asked in scenes.
+bool has_questions(const Scenario& scenario) { return scenario.questions.has_value(); }
 
 }  // namespace
 
 CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase& phase) {
   job.seed = seed;
   job.hidden = runs_below(job.plugin.file.parent_path());
-  std::optional<Scenario> unseen = with_unseen_commands(job.environment);
+  std::optional<Scenario> unseen = first_scenario(job.environment, has_unseen_commands);
   if (job.environment.empty()) job.environment = unseen ? unseen->environment : environment_ids().front();
   std::vector<std::unique_ptr<Bench>> benches;
   const std::string& example = find_environment(job.environment).tasks().front().example;
-  benches.push_back(std::make_unique<Bench>(load_scenario(example), engine));
+  std::optional<Scenario> asking;
+  if (job.plugin.asks == "accept") asking = first_scenario(job.environment, has_questions);
+  benches.push_back(std::make_unique<Bench>(asking ? *std::move(asking) : load_scenario(example), engine));
   if (unseen) benches.push_back(std::make_unique<Bench>(*std::move(unseen), engine));
   phase("load", {});
   std::optional<Kept> kept;

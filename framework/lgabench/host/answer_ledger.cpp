@@ -196,7 +196,8 @@ Selection AnswerLedger::account(Selection selection) const {
   for (const Selection& answer : answers_) cost.human_seconds = std::max(cost.human_seconds, answer.cost.human_seconds);
   if (accepts_ > 0) {
     from.provenance = Provenance::simulated_edit;
-    edited += fmt::format(", after a person was shown {}", accepts_ == 1 ? "an object" : "objects");
+    edited += fmt::format("{}after a person was shown {}", from.source.empty() && edited.empty() ? "" : ", ",
+                          accepts_ == 1 ? "an object" : "objects");
   }
   selection.provenance = from.provenance;
   selection.source = from.source + edited;
