@@ -2,6 +2,7 @@
 
 The suite is a tiny one of the test's own, in a copy of the installed data. By hand: python3 leaderboard_test.py Submissions
 """
+import csv
 import hashlib
 import json
 import os
@@ -392,6 +393,93 @@ class Refusals(Board):
         self.assertIn('me.json: /: expected a member "license"', self.add(expect=2).stderr)
         (self.dir / "me.json").write_text(json.dumps({**META, "source": {"repository": "r", "commit": "main"}}))
         self.assertIn("/source/commit: expected 40 hexadecimal digits", self.add(expect=2).stderr)
+
+
+class NamesRead(Board):
+    """Rows whose names are read from pictures, in a suite that has them."""
+
+    def prepare(self):
+        super().prepare()
+        suite = {**SUITE, "methods": ["lga"], "names": ["simulator", "read"], "demonstrations": [2], "seeds": [0],
+                 "options": {"*": {"policy": "centroid"}}}
+        (self.dir / "data/suites/tiny.json").write_text(json.dumps(suite))
+
+    def play(self, out, *words, expect=0):
+        return self.call("run", "tiny", "--preset", "board", "--no-reference", "--out", out, *words, expect=expect)
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.first.play("found", "--names", "read", "--segments", "difference")
+
+    def setUp(self):
+        super().setUp()
+        if self is getattr(type(self), "first", self):
+            return
+        self.take_run()
+        shutil.copytree(self.first.dir / "found", self.dir / "found")
+        self.add()
+        self.add("found")
+
+    def entries(self):
+        """Entries' files by where their names and segments come from."""
+        all = {file: json.loads(file.read_text())["identity"] for file in self.dir.glob("board/entries/*/*/*/entry.json")}
+        return {(one.get("names"), one.get("segments")): file for file, one in all.items()}
+
+    def rows(self):
+        with open(self.dir / "board/leaderboard.csv", newline="") as file:
+            return {(row["names"], row["segments"]): row for row in csv.DictReader(file) if row["demonstrations"] == "all"}
+
+    def test_a_row_says_how_names_were_read_and_is_replayed_so(self):
+        entries = self.entries()
+        self.assertEqual(set(entries), {(None, None), ("read", None), ("read", "difference")})
+        reader = hashlib.sha256((self.dir / "data/readers/tabletop/plain.forest").read_bytes()).hexdigest()
+        for (names, _), file in entries.items():
+            self.assertEqual(json.loads(file.read_text())["identity"].get("reader"), names and reader)
+        self.replay()
+        self.assertIn("3 entries, 0 problems", self.leaderboard("check").stdout)
+        rows = self.rows()
+        self.assertEqual({row["tier"] for row in rows.values()}, {"replayed"})
+        self.assertEqual({key: row["not_ranked"] for key, row in rows.items()},
+                         {("simulator", "simulator"): "", ("read", "simulator"): "names read from pictures",
+                          ("read", "difference"): "names read from pictures"})
+        (self.dir / "board/tracks.json").write_text(json.dumps({"open": ["tiny-board"], "names_read": ["tiny-board"]}))
+        (self.dir / "board/labels.json").write_text(json.dumps({"values": {"names=read": "names by sight"}}))
+        self.leaderboard("build")
+        self.assertTrue(all(row["rank"] for row in self.rows().values()), self.rows())
+        readme, page = ((self.dir / "board" / file).read_text() for file in ("README.md", "tiny.html"))
+        for title in "LGA, names by sight, segments=difference", "LGA, names by sight", "LGA":
+            self.assertTrue(f"| {title} |" in readme and title in page, title)
+        for words in "--names read --segments difference", "--names simulator --segments simulator":
+            self.assertTrue(words in page, words)
+
+    def test_another_model_is_named_and_nothing_is_recorded(self):
+        (self.dir / "data/readers/tabletop/plain.forest").write_bytes((self.dir / "data/readers/tabletop/drawn.forest").read_bytes())
+        done = self.leaderboard("verify", "--by", "B. Reader", expect=2)
+        self.assertEqual(len(re.findall(r"model that reads names \(read\): [0-9a-f]{64} here, [0-9a-f]{64} in the entry", done.stderr)), 2)
+        self.assertEqual(len(done.stdout.splitlines()), 1, "the simulator's names")
+        shutil.rmtree(self.dir / "board")
+        self.assertIn("computed with other data than this installation's: lga+names=read ", " ".join(self.refused()))
+
+    def test_what_was_changed_is_found(self):
+        file = self.entries()[("read", None)]
+        honest = json.loads(file.read_text())
+        for member, value in ("names", "read_robust"), ("reader", "0" * 64), ("segments", "difference"):
+            with self.subTest(member):
+                file.write_text(json.dumps({**honest, "identity": {**honest["identity"], member: value}}, indent=1) + "\n")
+                self.assertIn("the hash of /identity", self.leaderboard("check", expect=1).stderr)
+        with self.subTest("with the id and place that follow"):
+            identity = {**honest["identity"], "names": "read_robust"}
+            new = hashlib.sha256(canonical(identity).strip().encode()).hexdigest()[:16]
+            shutil.move(file.parent.parent, file.parent.parent.with_name(new))
+            file = file.parent.parent.with_name(new) / "tiny-board/entry.json"
+            file.write_text(json.dumps({**honest, "id": new, "identity": identity}, indent=1) + "\n")
+            self.assertIn("model that reads names (read_robust): ", self.leaderboard("verify", new, "--by", "B. Reader", expect=2).stderr)
+
+    def test_what_a_plugin_reads_stays_outside(self):
+        self.play("mine", "--names", "fixture_reader", "--plugin-path", FIXTURES / "perceivers/fixture_reader.so")
+        shutil.rmtree(self.dir / "board")
+        self.assertIn("lga+names=fixture_reader: a plugin (fixture_reader) read its names, which no leaderboard ranks", self.refused("mine"))
 
 
 class Replays(Board):

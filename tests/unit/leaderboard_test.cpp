@@ -526,6 +526,11 @@ TEST(Tracks, AreReadAndRefuseAPresetInTwo) {
   const Tracks tracks = read_tracks(board.path);
   EXPECT_EQ(tracks.at("s-a").arms, std::vector<std::string>{"near"});
   EXPECT_EQ(tracks.at("s-l").kind, Track::open);
+  EXPECT_FALSE(tracks.at("s-l").names_read);
+  write_file(board.path / "tracks.json", R"({"open": ["s-l"], "names_read": ["s-l", "s-r"]})");
+  EXPECT_TRUE(read_tracks(board.path).at("s-l").names_read) << "whatever its track";
+  EXPECT_EQ(read_tracks(board.path).at("s-l").kind, Track::open);
+  EXPECT_TRUE(read_tracks(board.path).at("s-r").names_read);
   write_file(board.path / "tracks.json", R"({"abstraction": {"s-l": []}, "open": ["s-l"]})");
   EXPECT_SAYS(message_of<InputError>([&] { read_tracks(board.path); }), "/open/0: expected each preset in one track");
   for (const auto& [frozen, complaint] :
@@ -539,6 +544,28 @@ TEST(Tracks, AreReadAndRefuseAPresetInTwo) {
   const Tracks other{{small_setting().name(), {Track::abstraction, {"hard", "near"}}}};
   EXPECT_SAYS(message_of<InputError>([&] { expect_arms(board.path, other, small_setting()); }),
               "tracks.json: /abstraction/q1-board/1: expected an arm that the preset has, got \"near\"");
+}
+
+TEST(Standings, NamesReadAreRankedWhereTheTrackSaysSo) {
+  Entry read = replayed_entry(small_setting(), "a", .9), plain = replayed_entry(small_setting(), "b", .5);
+  const std::string before = plain.id();
+  EXPECT_FALSE(to_json(plain.identity).contains("names")) << "ids of entries of before stay";
+  read.identity.reading = {"read", Reading::difference};
+  read.identity.reader_sha256 = std::string(64, 'd');
+  EXPECT_NE(read.id(), before);
+  const auto by_id = [&](const Track& track) {
+    std::map<std::string, Standing> all;
+    for (const Standing& one : standings({&read, &plain}, track)) all[one.entry->id()] = one;
+    return all;
+  };
+  auto all = by_id({});
+  EXPECT_EQ(all.at(read.id()).not_ranked, names_were_read);
+  EXPECT_EQ(all.at(plain.id()).rank, 1) << "what has no rank influences none";
+  Track track;
+  track.names_read = true;
+  all = by_id(track);
+  EXPECT_EQ(all.at(read.id()).rank, 1);
+  EXPECT_EQ(all.at(plain.id()).rank, 2);
 }
 
 TEST(Standings, EpisodesOfAFailedCellAreLost) {

@@ -83,7 +83,9 @@ std::string other_setting(const Json& cell, const Json& expected) {
     return fmt::format("{} is {}, the board's preset has {}", member, canonical(there), canonical(value));
   }
   if (cell.contains("selection_errors")) return "errors were made in what was selected (selection_errors)";
-  if (cell.contains("names") || cell.contains("segments")) return "names were read from pictures (names, segments)";
+  for (const char* source : {"names", "segments"})
+    if (cell.contains(source) && !expected.contains(source))
+      return fmt::format("{} is {}, unlike in other cells of the row", source, canonical(cell.at(source)));
   if (cell.contains("train_on")) return "demonstrations were seen through a perturbation (train_on)";
   return cell.contains("participant") ? "based on a person's answers, for which the board has no place" : "";
 }
@@ -179,12 +181,16 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Catalogu
   entry.identity.answers_sha256 = answers_hash(run.directory, installed, first, reasons);
   entry.identity.engine = first.engine;
   entry.identity.engine_version = version_of(run, "engine", first.engine);
+  entry.identity.reading = first.reading;
+  entry.identity.reader_sha256 = first.data.value("reader", "");
+  if (const std::string id = first.reading.plugin(); !id.empty())
+    reasons.add(fmt::format("{}: a plugin ({}) read its names, which no leaderboard ranks", first.method.name, id));
   entry.identity.preset_sha256 = hash(installed.setting);
   entry.identity.scene_seed = installed.setting.scene_seed;
   const bool may_be_told =
       first.method.is_reference() || is_shipped(first.method.id, version_of(run, "method", first.method.id), shipped);
   Json data = Json::object();
-  const std::vector<Cell> cells = cells_of_row(installed, first.method, first.engine, first.answers);
+  const std::vector<Cell> cells = cells_of_row(installed, first.method, first.engine, first.answers, first.reading);
   std::vector<std::string> missing;
   for (const Cell& cell : cells) {
     const Place place{cell.scenario_id(), cell.layout, cell.demonstrations, cell.training_seed};
@@ -211,7 +217,8 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Catalogu
   }
   add_missing(first.method.name, missing, cells.size(), reasons);
   const auto played = [](const PlayedCell& cell) { return cell.failed.empty(); };
-  if (entry.cells.size() == cells.size() && std::all_of(entry.cells.begin(), entry.cells.end(), played)) {
+  if (entry.cells.size() == cells.size() && first.reading.none() &&  // names read change no answer
+      std::all_of(entry.cells.begin(), entry.cells.end(), played)) {
     const fs::path kept = answers_file(entry.identity).filename();
     const fs::path file = kept.empty() ? kept : run.directory / "answers" / kept;
     if (file.empty() || fs::exists(file))  // else there is a reason already

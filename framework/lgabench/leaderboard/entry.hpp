@@ -22,6 +22,8 @@ struct Identity {
   std::string engine, engine_version;
   std::string preset_sha256;  // hash(setting)
   std::uint64_t scene_seed = 0;
+  Reading reading{};            // of what the row sees
+  std::string reader_sha256{};  // of the model that reads names; "" where the simulator gives them
 };
 Json to_json(const Identity& identity);
 /// The board's copy of the answers that a row is based on, answers/SHA256.ENDING, relative to the board; "" where they

@@ -33,7 +33,8 @@ void expect_time(const JsonReader& reader) {
 }
 
 Identity read_identity(const JsonReader& reader) {
-  reader.only({"method", "kind", "version", "options", "asks", "acts", "answers", "engine", "preset", "scene_seed"});
+  reader.only({"method", "kind", "version", "options", "asks", "acts", "answers", "engine", "names", "reader",
+               "segments", "preset", "scene_seed"});
   Identity identity;
   identity.row.kind = reader.at("kind").string();
   if (identity.row.kind != "method" && identity.row.kind != "reference") reader.at("kind").fail("method or reference");
@@ -53,6 +54,13 @@ Identity read_identity(const JsonReader& reader) {
   identity.engine = engine.at("id").string();
   if (!is_id(identity.engine)) engine.at("id").fail("an id of letters, digits, _ and -");
   identity.engine_version = engine.at("version").string();
+  if (reader.has("names")) {
+    identity.reading.names = reader.at("names").string();
+    if (!is_id(identity.reading.names)) reader.at("names").fail("an id of letters, digits, _ and -");
+    expect_sha256(reader.at("reader"));
+    identity.reader_sha256 = reader.at("reader").string();
+  }
+  if (reader.has("segments")) identity.reading.segments = read_segments(reader.at("segments"));
   expect_sha256(reader.at("preset"));
   identity.preset_sha256 = reader.at("preset").string();
   identity.scene_seed = static_cast<std::uint64_t>(reader.at("scene_seed").integer(0, INT64_MAX));

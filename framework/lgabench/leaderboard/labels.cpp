@@ -55,6 +55,9 @@ std::string label_of(const Labels& labels, const Entry& entry, const std::vector
     const std::string words = words_for(labels, option + "=" + option_text(row.options.at(option)));
     text += (words.empty() ? "" : ", ") + words;
   }
+  const Reading& reading = entry.identity.reading;
+  for (const auto& [option, source] : {std::pair("names=", reading.names), {"segments=", reading.segments}})
+    if (source != Reading::simulator) text += ", " + words_for(labels, option + source);
   return text;
 }
 

@@ -27,8 +27,8 @@ Labels read_labels(const fs::path& board);
 
 /// What the entry is called, of whose options those in `telling` tell it from other rows of the table: the words of
 /// `rows` with the most options that fit, else the label that its authors propose, else the method's name; then, unless
-/// they stand for them, the words of its telling options, "option=value" where `values` has none. An empty word is left
-/// out; `policy` and `network` stand in policy_label().
+/// they stand for them, the words of its telling options, "option=value" where `values` has none; then where its names
+/// and segments come from, likewise. An empty word is left out; `policy` and `network` stand in policy_label().
 std::string label_of(const Labels& labels, const Entry& entry, const std::vector<std::string>& telling);
 
 /// What its policy is called: the words of `policy`, and of `network` where that is the paper's; "its own" of a method

@@ -79,10 +79,10 @@ std::string number(double value) { return fmt::format("{:.6g}", value); }
 
 std::string csv_of(const Suites& suites) {
   std::string text =
-      csv_line({"suite",     "preset",  "preset_hash", "scene_seed",     "id",        "method", "name",
-                "version",   "engine",  "answers",     "demonstrations", "ranking",   "rank",   "success",
-                "low",       "high",    "episodes",    "failed_cells",   "precision", "recall", "lm_queries",
-                "lm_tokens", "learn_s", "tier",        "not_ranked",     "by"});
+      csv_line({"suite",   "preset",     "preset_hash", "scene_seed", "id",       "method",         "name",
+                "version", "engine",     "answers",     "names",      "segments", "demonstrations", "ranking",
+                "rank",    "success",    "low",         "high",       "episodes", "failed_cells",   "precision",
+                "recall",  "lm_queries", "lm_tokens",   "learn_s",    "tier",     "not_ranked",     "by"});
   for (const auto& suite : suites)
     for (const NamedTable& table : suite.second)
       for (const NamedStanding& s : table.standings) {
@@ -99,6 +99,8 @@ std::string csv_of(const Suites& suites) {
                             identity.row.version,
                             identity.engine,
                             to_string(identity.answers),
+                            identity.reading.names,
+                            identity.reading.segments,
                             n,
                             to_string(table.ranking),
                             when_all(s.rank ? std::to_string(*s.rank) : ""),

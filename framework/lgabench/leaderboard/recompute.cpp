@@ -40,6 +40,16 @@ void expect_method(const Competitor& row, const Catalogue& catalogue) {
   expect_same("options of " + row.id, canonical(resolve_options(installed, row.options)), canonical(row.options));
 }
 
+// The entry's cells here. @throws InputError where another model reads names than the entry's.
+std::vector<Cell> cells_of(const Entry& entry, const Installed& installed) {
+  const Identity& identity = entry.identity;
+  std::vector<Cell> cells = cells_of_row(installed, identity.row, identity.engine, identity.answers, identity.reading);
+  for (const Cell& cell : cells)
+    expect_same("model that reads names (" + identity.reading.names + ")", cell.data.value("reader", ""),
+                identity.reader_sha256);
+  return cells;
+}
+
 // The score of an entry's answers follows from them alone.
 void expect_own_score(const fs::path& board, const Entry& entry, const Installed& installed) {
   if (entry.score.is_null()) return;
@@ -173,8 +183,7 @@ std::optional<Recomputed> played_again(const fs::path& board, const Entry& entry
                                        const std::vector<std::size_t>& places, int episodes, const Catalogue& catalogue,
                                        const VerifyOptions& options) {
   expect_method(entry.identity.row, catalogue);
-  const std::vector<Cell> all =
-      cells_of_row(installed_as(entry, catalogue), entry.identity.row, entry.identity.engine, entry.identity.answers);
+  const std::vector<Cell> all = cells_of(entry, installed_as(entry, catalogue));
   std::vector<Cell> cells;
   for (const std::size_t i : places) cells.push_back(all[i]);
   for (Cell& cell : cells) cell.episodes = std::min(cell.episodes, episodes);
@@ -196,8 +205,7 @@ std::optional<Json> verification(const fs::path& board, const Entry& entry, cons
   const std::vector<std::size_t> chosen =
       options.fresh ? fresh_cells(entry, nonce) : chosen_cells(entry, nonce, options.cells);
   if (options.fresh) installed.design.scene_seed = std::stoull(sha256(nonce).substr(0, 15), nullptr, 16);
-  const std::vector<Cell> all =
-      cells_of_row(installed, entry.identity.row, entry.identity.engine, entry.identity.answers);
+  const std::vector<Cell> all = cells_of(entry, installed);
   std::vector<Cell> cells;
   for (const std::size_t i : chosen) cells.push_back(all[i]);
   const RunPlan plan = plan_of(board, entry, std::move(cells), options);

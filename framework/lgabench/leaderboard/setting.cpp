@@ -128,18 +128,20 @@ Installed installed_setting(const std::string& suite, const std::string& preset)
 }
 
 std::vector<Cell> cells_of_row(const Installed& installed, const Competitor& row, const std::string& engine,
-                               const AnswerSource& answers) {
+                               const AnswerSource& answers, const Reading& reading) {
   std::vector<Cell> cells;
   Cell cell;
   for (const Place& place : installed.setting.places(learns(row))) {
-    if (cells.empty() || !(place.scenario == cells.back().scenario_id()))
-      cell =
-          unplayed_cell(installed.suite, installed.design,
-                        suite_scenario(installed.suite, place.scenario, Truth::released, &installed.design), answers);
+    if (cells.empty() || !(place.scenario == cells.back().scenario_id())) {
+      const Scenario scenario = suite_scenario(installed.suite, place.scenario, Truth::released, &installed.design);
+      cell = unplayed_cell(installed.suite, installed.design, scenario, answers);
+      cell.reading = reading;
+      if (!reading.none()) cell.data = data_hashes(scenario, answers, reading);
+    }
     cell.layout = place.layout;
     cell.engine = engine;
     cell.method = row;
-    cell.method.name = row.own_name();
+    cell.method.name = row.own_name() + reading.suffix();
     cell.demonstrations = place.demonstrations;
     cell.training_seed = place.seed;
     cells.push_back(cell);

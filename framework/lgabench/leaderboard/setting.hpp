@@ -67,8 +67,9 @@ struct Installed {
 /// board's, since methods are tuned on the others' scenes.
 Installed installed_setting(const std::string& suite, const std::string& preset);
 
-/// The cells of a row, in the order of places(). Their keys are those of a run of this row alone.
+/// The cells of a row, in the order of places(). Their keys are those of a run of this row alone. @throws InputError
+/// where the environment has no such reader.
 std::vector<Cell> cells_of_row(const Installed& installed, const Competitor& row, const std::string& engine,
-                               const AnswerSource& answers);
+                               const AnswerSource& answers, const Reading& reading = {});
 
 }  // namespace lgabench::leaderboard

@@ -138,7 +138,7 @@ void add_gaps(std::vector<Standing>& all, const Track& track) {
   for (Standing& standing : all) {
     standing.in_track = in_track(standing, track);
     const Competitor& row = standing.entry->identity.row;
-    if (row.acts || policy_of(*standing.entry) != "heat_map") continue;
+    if (row.acts || policy_of(*standing.entry) != "heat_map" || !standing.entry->identity.reading.none()) continue;
     if (row.id == "factorial" && row.options.value("input", Json()) == "object_mask") any = standing.in_track;
     if (row.id == "human") truth = standing.in_track;
   }
@@ -215,6 +215,8 @@ std::vector<Standing> standings(const std::vector<const Entry*>& table, const Tr
     standing.not_ranked = why_not_ranked(*entry);
     if (standing.not_ranked.empty() && track.kind == Track::abstraction)
       standing.not_ranked = why_not_in_track(*entry, track);
+    if (standing.not_ranked.empty() && !entry->identity.reading.none() && !track.names_read)
+      standing.not_ranked = names_were_read;
     add_rates(standing);
     add_costs(standing);
     rates.push_back(rates_of(*entry));

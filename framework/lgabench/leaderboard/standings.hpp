@@ -43,6 +43,9 @@ Rates rates_of(const Entry& entry, const std::string& only_arm = "", int only_de
 /// The mark of an entry whose answers are a file that its authors wrote, which may be a copy of the truth.
 inline constexpr const char* as_submitted = "answers as submitted";
 
+/// The mark of an entry that read names from pictures, in a table that does not rank by that (Track::names_read).
+inline constexpr const char* names_were_read = "names read from pictures";
+
 /// Where its Selections come from.
 std::set<std::string> provenances_of(const Entry& entry);
 

@@ -27,11 +27,14 @@ std::string success_bits(const Entry& entry) {
   return base64(bytes);
 }
 
-std::string command_of(const Entry& entry) {
+// `says_names`: also the simulator's, where the preset has others.
+std::string command_of(const Entry& entry, bool says_names) {
   const Identity& identity = entry.identity;
   std::vector<std::string> words{"lgabench",           "run",       entry.setting.suite, "--preset",
                                  entry.setting.preset, "--engines", identity.engine};
   if (!identity.row.is_reference()) words.insert(words.end(), {"--methods", entry.spec(), "--no-reference"});
+  if (says_names && !identity.row.is_reference())
+    words.insert(words.end(), {"--names", identity.reading.names, "--segments", identity.reading.segments});
   const std::string kept = answers_file(identity).string();
   words.insert(words.end(), {"--answers", kept.empty() ? to_string(identity.answers)
                                           : std::holds_alternative<FileAnswers>(identity.answers)
@@ -98,7 +101,7 @@ Json suite_data(const std::vector<NamedTable>& tables, const BoardScenes& scenes
                          {"version", entry.identity.row.version},
                          {"answers", to_string(entry.identity.answers)},
                          {"kept_answers", answers_file(entry.identity).string()},
-                         {"command", command_of(entry)},
+                         {"command", command_of(entry, table.track.names_read || !entry.identity.reading.none())},
                          {"authors", entry.about.at("authors")},
                          {"license", entry.about.at("license")},
                          {"source", link_of(source_span(entry))},

@@ -62,6 +62,7 @@ std::vector<NamedStanding> named(const std::vector<Standing>& standings, const L
     s.name = identity.row.own_name();
     for (const auto& [option, value] : identity.row.options.items())
       if (telling.count(option) > 0) s.name += fmt::format("+{}={}", option, option_text(value));
+    s.name += identity.reading.suffix();
     ++times[s.name];
     s.label = label_of(words, *s.entry, options);
     s.policy = policy_label(words, *s.entry);
@@ -82,12 +83,13 @@ std::vector<NamedStanding> named(const std::vector<Standing>& standings, const L
 }
 
 // The first row of a method is its best, as rows stand by rank and success. Each file of answers that somebody submits
-// competes for itself.
+// competes for itself, and so does each way to read names.
 void mark_more(std::vector<NamedStanding>& standings) {
   std::set<std::string> known;
   for (NamedStanding& s : standings) {
     const std::string answers = s.entry->has_answers_as_submitted() ? s.entry->identity.answers_sha256 : "";
-    s.more = !known.insert(s.entry->identity.row.own_name() + " " + answers).second;
+    const Identity& identity = s.entry->identity;
+    s.more = !known.insert(identity.row.own_name() + identity.reading.suffix() + " " + answers).second;
   }
 }
 

@@ -15,7 +15,7 @@ Tracks read_tracks(const fs::path& board) {
   if (!fs::exists(fs::symlink_status(file))) return {};
   const Json json = read_json(file, Links::refused);
   const JsonReader reader(json, file.string());
-  reader.only({"abstraction", "frozen", "open"});
+  reader.only({"abstraction", "frozen", "open", "names_read"});
   Tracks tracks;
   const auto add = [&tracks](const JsonReader& place, const std::string& preset, Track track) {
     if (!tracks.emplace(preset, std::move(track)).second) place.fail("each preset in one track");
@@ -38,6 +38,8 @@ Tracks read_tracks(const fs::path& board) {
   }
   if (reader.has("open"))
     for (const JsonReader& preset : reader.at("open").elements()) add(preset, preset.string(), {Track::open, {}});
+  if (reader.has("names_read"))
+    for (const std::string& preset : reader.at("names_read").strings()) tracks[preset].names_read = true;
   return tracks;
 }
 

@@ -17,6 +17,7 @@ struct Track {
   enum Kind { reproduction, abstraction, open } kind = reproduction;
   std::vector<std::string> arms{};  // of the abstraction track: where an abstraction decides
   std::string answers{};            // likewise: whose frozen answers the rows share that are ranked; "": nobody is
+  bool names_read = false;          // of any: whether rows whose names were read from pictures are ranked
 };
 
 /// By preset, as "clutter-abstraction".
