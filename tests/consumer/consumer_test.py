@@ -204,6 +204,15 @@ class NewPlugin(Consumer):
         curves = json.loads((self.dir / "my_axis/run/summary.json").read_text())["perturbations"]
         self.assertEqual({(curve["axis"], len(curve["levels"])) for curve in curves}, {("my_axis", 4)})
 
+    def test_a_perceiver(self):
+        plugin = self.build("my_eyes", "--kind", "perceiver")
+        self.assertEqual(set(self.check(plugin).values()), {"ok"})
+        self.lgabench("run", "pictures", "--preset", "smoke", "--names", "simulator,my_eyes", "--plugin-path", "build", "--scenarios",
+                      "heart", "--methods", "human", "--episodes", "2", "--set", "*.policy=centroid", "--out", "run", cwd=self.dir / "my_eyes")
+        rows = json.loads((self.dir / "my_eyes/run/summary.json").read_text())["rows"]
+        self.assertIn("human+names=my_eyes", {row["method"] for row in rows})
+        self.assertEqual({row["n_error"] for row in rows}, {0})
+
     def test_bad_names_are_refused(self):
         for name in ("My", "../outside", "1st", "a-b"):
             self.assertIn("expected at most 63 lower-case letters", self.lgabench("new-plugin", name, expect=2).stderr)

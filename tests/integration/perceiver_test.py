@@ -87,6 +87,14 @@ class Perceivers(case.Case):
         texts = [next((self.dir / run).glob("cells/*/episodes.jsonl")).read_text() for run in ("library", "python")]
         self.assertEqual(*texts)
 
+    @unittest.skipUnless(HAS_NUMPY, f"{PYTHON} has no NumPy")
+    def test_a_new_one_in_python(self):
+        self.call("new-plugin", "my_eyes", "--kind", "perceiver", "--language", "python", "--directory", "eyes")
+        report = json.loads(self.call("check-plugin", "eyes/my_eyes.py:MyEyes", "--python", PYTHON, "--json").stdout)
+        self.assertEqual({finding["state"] for finding in report["findings"]}, {"ok"}, report)
+        self.run_names("my_eyes", "--no-reference", plugin="eyes/my_eyes.py:MyEyes")
+        self.assertEqual({status["state"] for _, status in self.cells("run").values()}, {"ok"})
+
     def test_what_fails_costs_its_own_cell(self):
         for way, reason in (("throws", "fixture_reader (perceiver): its own failure"), ("crashes", "signal 11 (Segmentation fault)"),
                             ("wrong size", "read() returned 3 bytes of rgb and 32768 of ids, expected 98304 and 32768"),

@@ -52,7 +52,8 @@ void expect_name(const std::string& name) {
 void new_plugin(const NewPluginArguments& a) {
   expect_name(a.name);
   if (a.language == "python" && a.kind == "engine")
-    throw InputError("new-plugin: --language python: expected a method or a perturbation, an engine is in C++");
+    throw InputError(
+        "new-plugin: --language python: expected a method, a perturbation or a perceiver, an engine is in C++");
   if (!a.with.empty() && (a.kind != "method" || a.language == "python"))
     throw InputError("new-plugin: --with " + a.with + ": expected a method in C++");
   const fs::path directory = a.directory.empty() ? fs::path(a.name) : a.directory;
@@ -73,11 +74,11 @@ void new_plugin(const NewPluginArguments& a) {
                                                                     {"@PREFIX@", prefix.string()}}));
     to_stdout("{}\n", (directory / to).string());
   };
+  const bool perceives = a.kind == "perturbation" || a.kind == "perceiver";
   if (a.kind == "perturbation") write("perturbation_suite.json.in", a.name + "_suite.json");
   if (a.kind == "python" || a.language == "python") {
-    const bool is_axis = a.kind == "perturbation";
-    write(is_axis ? "perturbation.py.in" : "python.py.in", a.name + ".py");
-    write(is_axis ? "python_perturbation.README.md.in" : "python.README.md.in", "README.md");
+    write((perceives ? a.kind : "python") + ".py.in", a.name + ".py");
+    write((perceives ? "python_" + a.kind : "python") + ".README.md.in", "README.md");
     return;
   }
   const auto write_example = [&](const std::string& example, const std::string& type) {
@@ -97,7 +98,7 @@ void new_plugin(const NewPluginArguments& a) {
   else
     write(a.kind + ".cpp.in", a.name + ".cpp");
   write(a.kind + ".README.md.in", "README.md");
-  write("CMakeLists." + a.kind + ".txt.in", "CMakeLists.txt");
+  write("CMakeLists." + (perceives ? "perceiving" : a.kind) + ".txt.in", "CMakeLists.txt");
   write("CMakePresets.json.in", "CMakePresets.json");
 }
 
@@ -107,10 +108,10 @@ void add_new_plugin(CLI::App& app, int& exit) {
   auto a = std::make_shared<NewPluginArguments>();
   Verb verb(app, "new-plugin", "Write a working project for a new plugin, for you to change");
   verb.option("name NAME", a->name, "Its id: lower-case letters, digits, underscores", required);
-  verb.option("--kind method|engine|perturbation|python", a->kind,
-              "method, engine or perturbation; python: a method in Python",
-              one_of("kind", {"method", "engine", "perturbation", "python"}), with_default);
-  verb.option("--language c++|python", a->language, "c++, or python for a method or a perturbation",
+  verb.option("--kind method|engine|perturbation|perceiver|python", a->kind,
+              "method, engine, perturbation or perceiver; python: a method in Python",
+              one_of("kind", {"method", "engine", "perturbation", "perceiver", "python"}), with_default);
+  verb.option("--language c++|python", a->language, "c++, or python for a method, a perturbation or a perceiver",
               one_of("language", {"c++", "python"}), with_default);
   verb.option("--with torch|opencv", a->with,
               "A method in C++ that also links LibTorch, with a network to start from, or OpenCV",
