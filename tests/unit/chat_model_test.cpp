@@ -818,6 +818,22 @@ TEST(FinalAnswer, SaysWhatIsWrongWithAReply) {
   EXPECT_SAYS(said("<think>It is red.\nFinal answer: yes"), "got a reply whose thoughts do not end");
 }
 
+TEST(FinalAnswer, NamesMarks) {
+  using Marks = std::vector<int>;
+  for (const char* two : {"Final answer: 2, 5", "**Final answer:** 5 and 2.", "final answer is marks 2 and 5",
+                          "Final answer:\n2, 5", "<think>Final answer: 3</think>\nFinal answer: 2, 5, 2",
+                          "I end with \"Final answer: 1\".\nFinal answer: 2, 5\nThat is all."})
+    EXPECT_EQ(final_marks(two, 5), (Marks{2, 5})) << two;
+  EXPECT_EQ(final_marks("Final answer: none.", 5), Marks());
+  for (const char* no : {"", "2, 5", "Final answer:", "Final answer: 2 or 5", "Final answer: none, 2",
+                         "Final answer: the heart", "<think>Final answer: 2", "Final answer: 2\nFinal answer: unclear"})
+    EXPECT_THROW(final_marks(no, 5), MethodError) << no;
+  const auto said = [](const char* reply) { return message_of<MethodError>([&] { final_marks(reply, 5); }); };
+  EXPECT_SAYS(said("Final answer: 2, 6"), "there is no mark 6, there are 1 to 5");
+  EXPECT_SAYS(said("Final answer: 0"), "there is no mark 0");
+  EXPECT_SAYS(said("Final answer: 2\nNo.\nFinal answer: 3"), "expected one final answer, got a reply with two");
+}
+
 TEST(Prompt, AsksOfTheTargetOrTheObstacleAndFillsInEachPlaceOnce) {
   const PromptTemplate prompt;
   const Command braces = command_of("sweep", "Bring me {candidate}.");

@@ -240,5 +240,30 @@ TEST(Forest, SavesWhatItGrewAndRefusesOtherBytes) {
   EXPECT_THROW(seeing::Model::of("lgabench reader 0\n"), InputError);
 }
 
+TEST(Marks, StandBesideTheirSegmentsAndHideNone) {
+  Observation seen{{128, 256}, std::vector<std::uint8_t>(128 * 256 * 3, 100), std::vector<std::uint8_t>(128 * 256), {}};
+  const auto fill = [&](std::uint8_t id, int top, int left) {
+    for (int row = top; row < top + 28; ++row)
+      for (int column = left; column < left + 28; ++column)
+        seen.ids[static_cast<std::size_t>(row) * 256 + static_cast<std::size_t>(column)] = id;
+  };
+  fill(7, 40, 60);  // with a free place around it,
+  fill(3, 0, 228);  // in a corner,
+  fill(9, 40, 90);  // and beside the first
+  const Observation large = marked(seen, {7, 3, 9});
+  ASSERT_EQ(large.size, (PictureSize{768, 1536}));
+  ASSERT_EQ(large.rgb.size(), 768u * 1536u * 3u);
+  int changed = 0, hidden = 0;
+  for (std::size_t row = 0; row < 768; ++row)
+    for (std::size_t column = 0; column < 1536; ++column) {
+      const bool drawn = large.rgb[3 * (row * 1536 + column)] != 100;
+      changed += drawn;
+      hidden += drawn && seen.ids[row / 6 * 256 + column / 6] != 0;
+    }
+  EXPECT_GT(changed, 3 * 40 * 40);
+  EXPECT_LT(hidden, 300) << "but for the lines around labels";
+  EXPECT_NE(marked(seen, {3, 7, 9}).rgb, large.rgb) << "numbers follow the order";
+}
+
 }  // namespace
 }  // namespace lgabench

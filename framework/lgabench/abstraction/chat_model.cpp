@@ -10,10 +10,13 @@
 #include <iterator>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include <lgabench/abstraction/final_answer.hpp>
 #include <lgabench/abstraction/meaning_reply.hpp>
+#include <lgabench/core/base64.hpp>
+#include <lgabench/core/hash.hpp>
 
 namespace lgabench {
 namespace {
@@ -40,6 +43,13 @@ ChatReply complete(ChatClient& client, const Json& request) {
   }
 }
 
+// A command line's words before --answers that ask about the command.
+std::string asks_about(const Command& command, const FeatureSpace& space) {
+  return fmt::format("select \"{}\" --task {} --space {}", command.utterance, command.task, space.id);
+}
+
+constexpr const char* json_again = "the JSON object again, after a line \"Final answer:\"";
+
 }  // namespace
 
 Json messages_of(const Prompt& prompt) {
@@ -51,6 +61,14 @@ ChatLanguageModel::ChatLanguageModel(Cassette& cassette, ChatClient* client, Cha
       client_(client),
       options_(std::move(options)),
       asked_model_(read_asked_model(options_.model)) {}
+
+// The picture stands in the place of its hash.
+Json ChatLanguageModel::Request::sent() const {
+  Json body = json;
+  if (!picture.empty())
+    body["messages"][1]["content"][1]["image_url"]["url"] = "data:image/png;base64," + base64(picture);
+  return body;
+}
 
 // Several at once. A server that fails stops the rest, which has not begun; a question without an answer does not,
 // unless none has had one.
@@ -66,9 +84,9 @@ void ChatLanguageModel::ask(const std::vector<Request>& requests, const std::str
       std::exception_ptr thrown;
       std::string no_answer;
       try {
-        cassette_.add(
-            requests[i].key, requests[i].json,
-            requests[i].yes_or_no ? complete(*client_, requests[i].json) : client_->complete(requests[i].json));
+        const Json sent = requests[i].sent();
+        cassette_.add(requests[i].key, requests[i].json,
+                      requests[i].yes_or_no ? complete(*client_, sent) : client_->complete(sent));
       } catch (const NoAnswer& e) {
         no_answer = e.what();  // and is not kept, but asked again another time
       } catch (const MethodError& e) {
@@ -144,7 +162,7 @@ int ChatLanguageModel::open_questions(const Command& command, const FeatureSpace
 
 // Asks for what the cassette lacks.
 void ChatLanguageModel::expect_replies(const std::vector<Request>& requests, const Command& command,
-                                       const FeatureSpace& space) {
+                                       const std::string& asks) {
   const auto without_reply = [&] {
     std::vector<Request> some;
     std::copy_if(requests.begin(), requests.end(), std::back_inserter(some),
@@ -154,10 +172,10 @@ void ChatLanguageModel::expect_replies(const std::vector<Request>& requests, con
   if (const std::size_t missing = without_reply().size(); missing > 0) {
     if (!client_)
       throw InputError(fmt::format(
-          "{0}: expected replies of {1} to \"{2}\", {3} of {4} are missing; to ask: lgabench select \"{2}\" --task {5} "
-          "--space {6} --answers openai {7} --cassette {0}",
-          cassette_.file().string(), options_.model, command.utterance, missing, requests.size(), command.task,
-          space.id, command_words(asked_model_)));
+          "{0}: expected replies of {1} to \"{2}\", {3} of {4} are missing; to ask: lgabench {5} --answers openai {6} "
+          "--cassette {0}",
+          cassette_.file().string(), options_.model, command.utterance, missing, requests.size(), asks,
+          command_words(asked_model_)));
     bool waited = false;
     const Cassette::Turn turn(cassette_, [&](const std::string& why) {
       waited = true;
@@ -184,7 +202,7 @@ ChatReply ChatLanguageModel::counted(const Request& request) {
 std::vector<bool> ChatLanguageModel::answer(const Command& command, const FeatureSpace& space,
                                             const std::vector<Question>& questions) {
   const std::vector<Request> requests = requests_of(command, space, questions);
-  expect_replies(requests, command, space);
+  expect_replies(requests, command, asks_about(command, space));
   std::vector<bool> answers;
   for (const Request& request : requests) answers.push_back(final_answer(counted(request).text));
   return answers;
@@ -197,38 +215,62 @@ ChatLanguageModel::Request ChatLanguageModel::request_in_one(const PromptTemplat
 }
 
 template <class Read>
-auto ChatLanguageModel::asked_until_read(const PromptTemplate& prompt, const Command& command,
-                                         const FeatureSpace& space, const std::string& about, Read&& read)
+auto ChatLanguageModel::asked_until_read(Request request, const PromptTemplate& prompt, const Command& command,
+                                         const std::string& asks, const std::string& wanted, Read&& read)
     -> decltype(read(std::string())) {
-  Json messages = messages_of(prompt.fill(command, space));
   for (int attempt = 1;; ++attempt) {
-    const Request request = request_in_one(prompt, messages, about);
-    expect_replies({request}, command, space);
+    expect_replies({request}, command, asks);
     const std::string said = counted(request).text;
     try {
       return read(said);
     } catch (const MethodError& e) {
       if (attempt == most_tries) return {};
+      Json& messages = request.json["messages"];
       messages.push_back({{"role", "assistant"}, {"content", said}});
-      messages.push_back({{"role", "user"},
-                          {"content", fmt::format("That cannot be read: {}. Give the JSON object again, after a line "
-                                                  "\"Final answer:\".",
-                                                  e.what())}});
+      messages.push_back(
+          {{"role", "user"}, {"content", fmt::format("That cannot be read: {}. Give {}.", e.what(), wanted)}});
+      request.key = Cassette::key(request.json, prompt.version());
     }
   }
 }
 
 Meaning ChatLanguageModel::mean(const Command& command, const FeatureSpace& space) {
-  return asked_until_read(of_meaning_, command, space, "what it means",
+  return asked_until_read(request_in_one(of_meaning_, messages_of(of_meaning_.fill(command, space)), "what it means"),
+                          of_meaning_, command, asks_about(command, space), json_again,
                           [&space](const std::string& said) { return meaning_in(said, space); });
 }
 
 std::vector<Hypothesis> ChatLanguageModel::hypotheses(const Command& command, const FeatureSpace& space) {
-  const std::string about = "what it leaves unsaid";
-  const Request first = request_in_one(of_hypotheses_, messages_of(of_hypotheses_.fill(command, space)), about);
+  const Request first =
+      request_in_one(of_hypotheses_, messages_of(of_hypotheses_.fill(command, space)), "what it leaves unsaid");
   if (!client_ && !cassette_.find(first.key)) return {};
-  return asked_until_read(of_hypotheses_, command, space, about,
+  return asked_until_read(first, of_hypotheses_, command, asks_about(command, space), json_again,
                           [&space](const std::string& said) { return hypotheses_in(said, space); });
+}
+
+std::vector<int> ChatLanguageModel::look(const Command& command, const std::string& png, int marks) {
+  const PromptTemplate prompt("marks.txt");
+  const Prompt words = prompt.fill(command, {});
+  Json messages = messages_of(words);
+  messages[1]["content"] = {{{"type", "text"}, {"text", words.user}},
+                            {{"type", "image_url"}, {"image_url", {{"url", "sha256:" + sha256(png)}}}}};
+  Request request = request_in_one(prompt, messages, "a picture");
+  request.picture = png;
+  std::string why;
+  const auto named =
+      asked_until_read(std::move(request), prompt, command, "select --suite SUITE --score --names looked",
+                       "the line \"Final answer:\" with the numbers again",
+                       [&](const std::string& said) -> std::optional<std::vector<int>> {
+                         try {
+                           return final_marks(said, marks);
+                         } catch (const MethodError& e) {
+                           why = e.what();
+                           throw;
+                         }
+                       });
+  if (!named)
+    throw Unread(fmt::format("\"{}\", asked about a picture: {} (asked {} times)", command.utterance, why, most_tries));
+  return *named;
 }
 
 }  // namespace lgabench

@@ -26,6 +26,11 @@ struct Unanswered : MethodError {
   std::vector<std::string> questions;  // a line each: the candidate, and why
 };
 
+/// None of a question's replies can be read.
+struct Unread : MethodError {
+  using MethodError::MethodError;
+};
+
 /// A server of chat completions. complete() may be called from several threads at once.
 class ChatClient {
  public:
@@ -68,6 +73,10 @@ class ChatLanguageModel : public LanguageModel {
   Meaning mean(const Command& command, const FeatureSpace& space) override;
   /// Likewise; empty, at no cost, where nobody can be asked: without a client, of what the cassette lacks.
   std::vector<Hypothesis> hypotheses(const Command& command, const FeatureSpace& space) override;
+  /// Which of the numbers 1 to `marks` in a picture, PNG, the command could mean, in one question (marked()). The
+  /// server gets the picture; key and cassette hold its SHA-256. @throws as answer(), and Unread where no reply names
+  /// marks that there are.
+  std::vector<int> look(const Command& command, const std::string& png, int marks);
   /// How many of these a server would be asked: those without a reply in the cassette.
   int open_questions(const Command& command, const FeatureSpace& space, const std::vector<Question>& questions) const;
   /// As in ChatOptions: what is not the usual request belongs to the name.
@@ -79,18 +88,21 @@ class ChatLanguageModel : public LanguageModel {
  private:
   struct Request {
     std::string key, candidate;
-    Json json;
+    Json json;  // with the picture's SHA-256
     bool yes_or_no = true;
+    std::string picture{};
+    Json sent() const;
   };
   std::vector<Request> requests_of(const Command& command, const FeatureSpace& space,
                                    const std::vector<Question>& questions) const;
   void ask(const std::vector<Request>& requests, const std::string& utterance);
-  void expect_replies(const std::vector<Request>& requests, const Command& command, const FeatureSpace& space);
+  /// `asks`: a command line's words before --answers that ask for these.
+  void expect_replies(const std::vector<Request>& requests, const Command& command, const std::string& asks);
   ChatReply counted(const Request& request);
-  /// A question whose reply `read` reads; told what is wrong and asked again where it throws.
+  /// A question whose reply `read` reads; told what is wrong and asked again where it throws, to give `wanted`.
   template <class Read>
-  auto asked_until_read(const PromptTemplate& prompt, const Command& command, const FeatureSpace& space,
-                        const std::string& about, Read&& read) -> decltype(read(std::string()));
+  auto asked_until_read(Request request, const PromptTemplate& prompt, const Command& command, const std::string& asks,
+                        const std::string& wanted, Read&& read) -> decltype(read(std::string()));
   Request request_in_one(const PromptTemplate& prompt, const Json& messages, const std::string& about) const;
 
   Cassette& cassette_;

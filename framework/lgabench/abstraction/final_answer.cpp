@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include <lgabench/core/error.hpp>
@@ -76,6 +77,11 @@ std::string without_thoughts(const std::string& reply) {
   return rest;
 }
 
+std::string end_of(const std::string& reply) {
+  constexpr std::size_t shown = 80;
+  return reply.substr(reply.size() - std::min(reply.size(), shown));
+}
+
 // None where the reply has no answer, or more than one.
 std::optional<bool> answer_in(const std::string& reply) {
   const std::vector<Word> words = words_of(without_thoughts(reply));
@@ -94,14 +100,52 @@ std::optional<bool> answer_in(const std::string& reply) {
   return last.answer;
 }
 
+// The marks that a line says after "final answer", from word `at` on; none where it says something else.
+std::optional<std::set<int>> marks_at(const std::vector<Word>& words, std::size_t at, int most) {
+  std::set<int> marks;
+  bool none = false;
+  for (const std::size_t first = at; at < words.size() && words[at].line == words[first].line; ++at) {
+    const std::string& word = words[at].text;
+    if (word == "and" || word == "mark" || word == "marks") continue;
+    none = none || word == "none";
+    if (word == "none") continue;
+    if (word.size() > 3 || word.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
+    const int mark = std::stoi(word);
+    if (mark < 1 || mark > most)
+      throw MethodError(fmt::format("language model: there is no mark {}, there are 1 to {}", word, most));
+    marks.insert(mark);
+  }
+  if (none == !marks.empty()) return std::nullopt;  // neither, or both
+  return marks;
+}
+
 }  // namespace
+
+std::vector<int> final_marks(const std::string& reply, int most) {
+  const std::vector<Word> words = words_of(without_thoughts(reply));
+  std::optional<std::set<int>> said, stated;  // the last, and the last that begins its line
+  for (std::size_t i = 0; i + 1 < words.size(); ++i) {
+    if (words[i].text != "final" || words[i + 1].text != "answer") continue;
+    const bool is = i + 2 < words.size() && words[i + 2].text == "is";
+    const std::optional<std::set<int>> marks = marks_at(words, i + (is ? 3 : 2), most);
+    const bool begins_its_line = i == 0 || words[i - 1].line != words[i].line;
+    if (stated && marks && begins_its_line && *marks != *stated)
+      throw MethodError("language model: expected one final answer, got a reply with two");
+    said = marks;
+    if (begins_its_line) stated = marks;
+  }
+  if (!said)
+    throw MethodError(fmt::format(
+        "language model: expected a last line \"Final answer:\" and numbers, or none, got a reply that ends \"{}\"",
+        end_of(reply)));
+  return {said->begin(), said->end()};
+}
 
 bool final_answer(const std::string& reply) {
   if (const std::optional<bool> answer = answer_in(reply)) return *answer;
-  constexpr std::size_t shown = 80;
   throw MethodError(fmt::format(
       "language model: expected a last line \"Final answer: yes\" or \"... no\", got a reply that ends \"{}\"",
-      reply.substr(reply.size() - std::min(reply.size(), shown))));
+      end_of(reply)));
 }
 
 }  // namespace lgabench

@@ -1,6 +1,7 @@
 // How a language model's reply is read.
 #pragma once
 #include <string>
+#include <vector>
 
 namespace lgabench {
 
@@ -9,5 +10,10 @@ namespace lgabench {
 /// yes or no follows, where a condition does ("yes, if it is red"), where the reply says both, on a line each or
 /// after its answer, or where thoughts begin that do not end. No answer is never a no.
 bool final_answer(const std::string& reply);
+
+/// The numbers of the reply's last "final answer", sorted, each once; "none" is none. They stand in one line, with
+/// nothing but "and", "mark" or "marks" between. @throws MethodError for anything else: where none follows, for a
+/// number above `most` or 0, for lines that say different numbers, and for thoughts that do not end.
+std::vector<int> final_marks(const std::string& reply, int most);
 
 }  // namespace lgabench

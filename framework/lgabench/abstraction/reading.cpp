@@ -130,4 +130,8 @@ ReadPicture reading_of(const Scenario& scenario, const Reading& reading, std::sh
   };
 }
 
+Observation marked(const Observation& seen, const std::vector<std::uint8_t>& ids) {
+  return library().marked(seen, ids);
+}
+
 }  // namespace lgabench

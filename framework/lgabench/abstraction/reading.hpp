@@ -53,6 +53,10 @@ using ReadPicture = std::function<Observation(const Observation& seen, const Sce
 ReadPicture reading_of(const Scenario& scenario, const Reading& reading,
                        std::shared_ptr<Perceiver> perceiver = nullptr);
 
+/// The picture, enlarged, with the number 1, 2, ... beside the segment of each of `ids`; ids and names are left out.
+/// For a model that is shown it (ChatLanguageModel::look). @throws InputError where the library is not there.
+Observation marked(const Observation& seen, const std::vector<std::uint8_t>& ids);
+
 /// The file that finds segments and reads names; opened where a cell asks for either.
 inline constexpr const char* seeing_library = "liblgabench_seeing.so";
 
@@ -62,6 +66,7 @@ struct SeeingLibrary {
   Observation (*segments)(Observation seen, const Observation& empty, bool balances, RandomStream random);
   std::unique_ptr<Perceiver> (*reader)(const std::filesystem::path& file, bool balances, const Observation& empty,
                                        const FeatureSpace& space);
+  Observation (*marked)(const Observation& seen, const std::vector<std::uint8_t>& ids);
 };
 
 }  // namespace lgabench

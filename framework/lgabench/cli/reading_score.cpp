@@ -10,6 +10,7 @@
 #include <lgabench/abstraction/goal_mask.hpp>
 #include <lgabench/abstraction/reading.hpp>
 #include <lgabench/abstraction/scenes.hpp>
+#include <lgabench/cell/picture.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/core/suggest.hpp>
@@ -20,7 +21,8 @@ namespace lgabench::cli {
 namespace {
 
 struct Score {
-  int scenes = 0, exact = 0, objects = 0, segments = 0, types = 0, textures = 0;
+  int scenes = 0, exact = 0, objects = 0, segments = 0, types = 0, textures = 0, unread = 0;
+  SelectionCost cost{};
 };
 using Confusions = std::map<std::pair<std::string, std::string>, int>;  // what it is, what was read
 
@@ -48,8 +50,9 @@ std::array<Match, 256> matches(const Observation& seen, const Observation& read)
   return all;
 }
 
-void add_scene(const Scene& scene, const Observation& seen, const Observation& read, const Meaning& truth, Score& score,
-               Confusions& confusions) {
+// `kept`: segments.
+void add_scene(const Scene& scene, const Observation& seen, const Observation& read,
+               const std::vector<std::uint8_t>& kept_segments, Score& score, Confusions& confusions) {
   constexpr double good = .8, same = .5;
   const std::array<Match, 256> shows = matches(seen, read);
   for (const Instance& object : seen.instances) {
@@ -59,6 +62,7 @@ void add_scene(const Scene& scene, const Observation& seen, const Observation& r
       const Match& match = shows[one.id];
       if (match.object != object.id || match.overlap < same) continue;
       score.segments += match.overlap >= good;
+      if (one.object_type.empty()) continue;  // looked at, and not named
       score.types += one.object_type == object.object_type;
       score.textures += one.texture == object.texture;
       if (one.object_type != object.object_type) ++confusions[{object.object_type, one.object_type}];
@@ -66,7 +70,7 @@ void add_scene(const Scene& scene, const Observation& seen, const Observation& r
     }
   }
   std::vector<std::uint8_t> kept, meant;  // objects; 0 for a segment that shows none
-  for (const std::uint8_t id : grounded(truth, read)) kept.push_back(shows[id].overlap < same ? 0 : shows[id].object);
+  for (const std::uint8_t id : kept_segments) kept.push_back(shows[id].overlap < same ? 0 : shows[id].object);
   for (const SceneObject& object : scene.objects)
     for (const Instance& one : seen.instances)
       if (one.id == object.instance_id && one.pixels > 0 && object.role == role::target) meant.push_back(one.id);
@@ -93,65 +97,136 @@ void print_confusions(const Confusions& confusions, const Reading& reading) {
   to_stdout("\n");
 }
 
-}  // namespace
+// Each segment without a name, in the order of the ids, which is that of the marks.
+std::vector<Instance> unnamed(const Observation& seen) {
+  std::array<bool, 256> there{};
+  for (const std::uint8_t id : seen.ids) there[id] = true;
+  std::vector<Instance> all;
+  for (std::size_t id = 1; id < there.size(); ++id)
+    if (there[id]) all.push_back({static_cast<std::uint8_t>(id), "", "", 0});
+  return all;
+}
 
-void print_reading_scores(const Suite& suite, Truth truth, int scenes, bool json, const std::vector<std::string>& names,
-                          const std::vector<std::string>& segments) {
-  std::vector<std::string> known{Reading::simulator};
+// The segments that the model takes the command to mean, and what asking cost.
+std::vector<std::uint8_t> looked_at(ChatLanguageModel& model, const Command& command, const Observation& read,
+                                    Score& score) {
+  std::vector<std::uint8_t> ids, kept;
+  for (const Instance& one : read.instances) ids.push_back(one.id);
+  const Observation large = marked(read, ids);
+  Picture picture(large.size.columns, large.size.rows);
+  picture.paste(0, 0, large.size.columns, large.size.rows, 1, [&large](int column, int row) {
+    return pixel_colour(large, static_cast<std::size_t>(row) * static_cast<std::size_t>(large.size.columns) +
+                                   static_cast<std::size_t>(column));
+  });
+  const SelectionCost before = model.cost();
+  try {
+    for (const int mark : model.look(command, picture.png(), static_cast<int>(ids.size())))
+      kept.push_back(ids[static_cast<std::size_t>(mark) - 1]);
+  } catch (const Unread& e) {
+    to_stderr("no answer: {}\n", one_line(e.what()));
+    ++score.unread;
+    kept.assign(1, 0);
+  }
+  score.cost += model.cost() - before;
+  return kept;
+}
+
+void print_row(const Reading& reading, const std::string& arm, const Score& score, bool json) {
+  const bool by_model = reading.names == looked;
+  if (json) {
+    Json row{{"names", reading.names},          {"segments", reading.segments}, {"arm", arm},
+             {"scenes", score.scenes},          {"exact_scenes", score.exact},  {"objects", score.objects},
+             {"segments_right", score.segments}};
+    if (by_model)
+      row.update({{"unread", score.unread},
+                  {"lm_queries", score.cost.lm_queries},
+                  {"lm_tokens", score.cost.lm_tokens},
+                  {"lm_seconds", score.cost.lm_seconds}});
+    else
+      row.update({{"types_right", score.types}, {"textures_right", score.textures}});
+    return to_stdout("{}\n", canonical(row));
+  }
+  const auto named = [&](int right) { return by_model ? "-" : share_of(right, score.objects); };
+  to_stdout("{:<14} {:<10} {:<20} {:>6}  {:>7}  {:>8}  {:>7}  {:>8}", reading.names, reading.segments, arm,
+            share_of(score.exact, score.scenes), score.objects, share_of(score.segments, score.objects),
+            named(score.types), named(score.textures));
+  if (by_model)
+    to_stdout("  {} questions, {} tokens, {:.1f} s", score.cost.lm_queries, score.cost.lm_tokens,
+              score.cost.lm_seconds);
+  to_stdout("\n");
+}
+
+void expect_known(const Suite& suite, Truth truth, const ReadingArguments& a) {
+  std::vector<std::string> known{Reading::simulator}, arms;
   known.insert(known.end(), names_read().begin(), names_read().end());
-  for (const std::string& one : names)
+  known.emplace_back(looked);
+  for (const std::string& one : a.names)
     if (std::find(known.begin(), known.end(), one) == known.end())
       throw InputError(fmt::format("--names: {}, and no plugin's", none_named("names", one, known)));
-  for (const std::string& one : segments)
+  for (const std::string& one : a.segments)
     if (one != Reading::simulator && one != Reading::difference)
       throw InputError("--segments: " + none_named("segments", one, {Reading::simulator, Reading::difference}));
-  if (!json)
+  for (const std::string& id : suite_scenario_ids(suite, suite.design))
+    for (const Arm& arm : suite_scenario(suite, id, truth).tests)
+      if (std::find(arms.begin(), arms.end(), arm.id) == arms.end()) arms.push_back(arm.id);
+  for (const std::string& one : a.arms)
+    if (std::find(arms.begin(), arms.end(), one) == arms.end())
+      throw InputError("--arms: " + none_named("arm", one, arms));
+}
+
+}  // namespace
+
+void print_reading_scores(const Suite& suite, Truth truth, const ReadingArguments& a, ChatLanguageModel* model) {
+  expect_known(suite, truth, a);
+  if (!a.json)
     to_stdout(
         "{} scenes of each arm of each scenario; the true Selections\n\n{:<14} {:<10} {:<20} {:>6}  {:>7}  {:>8}  "
         "{:>7}  {:>8}\n",
-        scenes, "names", "segments", "arm", "exact", "objects", "segments", "types", "textures");
+        a.scenes, "names", "segments", "arm", "exact", "objects", "segments", "types", "textures");
   const std::vector<std::string> simulator{Reading::simulator};
-  for (const std::string& of_names : names.empty() ? simulator : names)
-    for (const std::string& of_segments : segments.empty() ? simulator : segments) {
+  std::vector<std::string> unanswered;
+  for (const std::string& of_names : a.names.empty() ? simulator : a.names)
+    for (const std::string& of_segments : a.segments.empty() ? simulator : a.segments) {
       const Reading reading{of_names, of_segments};
+      const bool by_model = of_names == looked;
+      const Reading by_reader = by_model ? Reading{Reading::simulator, of_segments} : reading;
       std::vector<std::pair<std::string, Score>> arms;  // in the order in which scenarios first have them
       Confusions confusions;
       for (const std::string& id : suite_scenario_ids(suite, suite.design)) {
         const Scenario scenario = suite_scenario(suite, id, truth);
-        if (const std::string why = why_not_read(scenario, reading); !why.empty())
+        if (const std::string why = why_not_read(scenario, by_reader); !why.empty())
           throw InputError(fmt::format("{}: scenario {}: {}", suite.id, id, why));
-        const ReadPicture read = reading_of(scenario, reading);
+        const ReadPicture read = reading_of(scenario, by_reader);
         const EnvironmentType& environment = find_environment(scenario.environment);
         for (const Arm& arm : scenario.tests) {
+          if (!a.arms.empty() && std::find(a.arms.begin(), a.arms.end(), arm.id) == a.arms.end()) continue;
           auto row = std::find_if(arms.begin(), arms.end(), [&](const auto& one) { return one.first == arm.id; });
           if (row == arms.end()) row = arms.insert(arms.end(), {arm.id, {}});
           const Perception perceived = perception_of(scenario, arm);
-          for (int i = 0; i < scenes; ++i) {
+          for (int i = 0; i < a.scenes; ++i) {
             const Scene scene = test_scene(scenario, suite.design.layouts.front(), arm.id, suite.design.scene_seed, i);
             Observation seen = environment.draw(scene, view_of(scenario, scene));
             const Observation shown = perceived ? perceived(seen, scene) : seen;
-            const Meaning& meant = scenario.commands[static_cast<std::size_t>(scene.command)].truth.target;
-            add_scene(scene, seen, read ? read(shown, scene) : shown, meant, row->second, confusions);
+            Observation there = read ? read(shown, scene) : shown;
+            if (by_model) there.instances = unnamed(there);
+            try {
+              const std::vector<std::uint8_t> kept =
+                  by_model ? looked_at(*model, scenario.command(scene.command), there, row->second)
+                           : grounded(scenario.commands[static_cast<std::size_t>(scene.command)].truth.target, there);
+              add_scene(scene, seen, there, kept, row->second, confusions);
+            } catch (const Unanswered& e) {
+              unanswered.insert(unanswered.end(), e.questions.begin(), e.questions.end());
+            }
           }
         }
       }
-      for (const auto& [arm, score] : arms)
-        if (json)
-          to_stdout("{}\n", canonical({{"names", reading.names},
-                                       {"segments", reading.segments},
-                                       {"arm", arm},
-                                       {"scenes", score.scenes},
-                                       {"exact_scenes", score.exact},
-                                       {"objects", score.objects},
-                                       {"segments_right", score.segments},
-                                       {"types_right", score.types},
-                                       {"textures_right", score.textures}}));
-        else
-          to_stdout("{:<14} {:<10} {:<20} {:>6}  {:>7}  {:>8}  {:>7}  {:>8}\n", reading.names, reading.segments, arm,
-                    share_of(score.exact, score.scenes), score.objects, share_of(score.segments, score.objects),
-                    share_of(score.types, score.objects), share_of(score.textures, score.objects));
-      if (!json) print_confusions(confusions, reading);
+      for (const auto& [arm, score] : arms) print_row(reading, arm, score, a.json);
+      if (!a.json) print_confusions(confusions, reading);
     }
+  if (unanswered.empty()) return;
+  for (const std::string& question : unanswered) to_stderr("no answer: {}\n", one_line(question));
+  throw MethodError(fmt::format("{} pictures have no reply, and are in no row; the same command asks for these again",
+                                unanswered.size()));
 }
 
 }  // namespace lgabench::cli

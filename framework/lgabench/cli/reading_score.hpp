@@ -3,17 +3,30 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/abstraction/chat_model.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/harness/suite.hpp>
 
 namespace lgabench::cli {
 
+/// The name under which a model is shown pictures.
+inline constexpr const char* looked = "looked";
+
+struct ReadingArguments {
+  int scenes = 30;
+  bool json = false;
+  std::vector<std::string> names, segments, arms;  // arms: those alone; none: all
+};
+
 /// Reads `scenes` test scenes of each arm of each scenario of the suite in each of these ways, and prints for every
 /// arm: in how many scenes the true Selection keeps exactly the objects that are meant, which share of the visible
 /// objects has its segment (four fifths of what both cover), its type and its texture; then which names were taken for
-/// which.
-/// @throws InputError for names that a plugin reads, and where a scenario's pictures cannot be read.
-void print_reading_scores(const Suite& suite, Truth truth, int scenes, bool json, const std::vector<std::string>& names,
-                          const std::vector<std::string>& segments);
+/// which. Under the name `looked`, `model` names the marked segments that the command could mean, and those are what is
+/// kept: then for every arm what it cost, and a line for each picture without an answer that can be read, which is not
+/// exact.
+/// @throws InputError for names that a plugin reads, for an arm that no scenario has, and where a scenario's pictures
+/// cannot be read; Unanswered at the end, for pictures without any reply, which are in no row.
+void print_reading_scores(const Suite& suite, Truth truth, const ReadingArguments& arguments,
+                          ChatLanguageModel* model = nullptr);
 
 }  // namespace lgabench::cli

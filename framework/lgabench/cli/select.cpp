@@ -36,7 +36,7 @@ struct SelectArguments {
   int concurrency = 4, max_queries = -1;
   bool json = false, score = false;
   int scenes = 30;
-  std::vector<std::string> names, segments;
+  std::vector<std::string> names, segments, arms;
 };
 
 // What is asked: the words, and the truth where a scenario has one for them.
@@ -224,6 +224,17 @@ void select(const Asked& asked, LanguageModel* answering, const SelectArguments&
   if (const auto& second = selection.second) print_set(second->role.c_str(), *second, asked.space, judged);
 }
 
+// Whether who answers is asked about pictures.
+bool looks(const SelectArguments& a) { return std::find(a.names.begin(), a.names.end(), looked) != a.names.end(); }
+
+void score_reading(const SelectArguments& a) {
+  const Answerer answerer = looks(a) ? make_answerer(a) : Answerer();
+  if (looks(a) && !answerer.model)
+    throw InputError("--names looked: expected --answers openai or cassette:FILE with it");
+  print_reading_scores(load_suite(a.suite), read_truth(a.truth), {a.scenes, a.json, a.names, a.segments, a.arms},
+                       answerer.model.get());
+}
+
 }  // namespace
 
 void add_select(CLI::App& app, int&) {
@@ -251,10 +262,12 @@ void add_select(CLI::App& app, int&) {
       ->needs(score);
   verb.option("--names SOURCE,...", arguments->names,
               "With --score: no answers, but what is read from test scenes with the true Selections: simulator, read, "
-              "read_balanced, read_drawn, read_robust")
+              "read_balanced, read_drawn, read_robust; looked: a model is shown each picture, and asked which of its "
+              "objects the command could mean (--answers openai or cassette:FILE)")
       ->needs(score);
   verb.option("--segments SOURCE,...", arguments->segments, "Likewise, from segments of: simulator, difference")
       ->needs(score);
+  verb.option("--arms ARM,...", arguments->arms, "With --names or --segments: in these arms only")->needs(score);
   verb.option("--best-product FILE", arguments->best_product,
               "With --suite: write answers instead, of each command the product of types and textures that keeps "
               "what is meant in most training scenes (found by ascent, from the truth): a reference for --answers FILE")
@@ -289,9 +302,9 @@ void add_select(CLI::App& app, int&) {
       throw InputError("select: expected a command, a scenario's id, or --suite");
     if (!arguments->best_product.empty())
       return write_best_products(load_suite(arguments->suite), read_truth(arguments->truth), arguments->best_product);
-    if (!arguments->names.empty() || !arguments->segments.empty())
-      return print_reading_scores(load_suite(arguments->suite), read_truth(arguments->truth), arguments->scenes,
-                                  arguments->json, arguments->names, arguments->segments);
+    if (!arguments->arms.empty() && arguments->names.empty() && arguments->segments.empty())
+      throw InputError("--arms: expected --names or --segments with it");
+    if (!arguments->names.empty() || !arguments->segments.empty()) return score_reading(*arguments);
     const Answerer answerer = make_answerer(*arguments);
     if (arguments->score) {
       const auto with_answers = [&](const Scenario& scenario, const std::function<void(LanguageModel&)>& use) {

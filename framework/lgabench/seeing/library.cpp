@@ -35,6 +35,7 @@ const lgabench::SeeingLibrary* lgabench_seeing() {
       [](const std::filesystem::path& file, bool balances, const lgabench::Observation& empty,
          const lgabench::FeatureSpace& space) -> std::unique_ptr<lgabench::Perceiver> {
         return std::make_unique<ShippedReader>(file, balances, empty, space);
-      }};
+      },
+      marked};
   return &library;
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <lgabench/core/feature_space.hpp>
 #include <lgabench/core/observation.hpp>
@@ -32,6 +33,10 @@ Observation balanced(Observation seen, const std::array<double, 3>& usual);
 /// Fills `ids`: what differs from the empty place and is not its shadow, each connected piece one segment. `random`
 /// permutes the ids. `balances`: as balanced(), first. Names and shadows are left empty.
 Observation segments_by_difference(Observation seen, const Observation& empty, bool balances, RandomStream random);
+
+/// The picture, enlarged, with the number 1, 2, ... beside the segment of each of `ids`, where it hides least of any.
+/// Ids and names are left out. @pre `seen` shows each of them.
+Observation marked(const Observation& seen, const std::vector<std::uint8_t>& ids);
 
 /// A model for one feature space. A value that never changes.
 class Reader {
