@@ -100,6 +100,26 @@ class Perturbations(case.BesideOneRun):
             self.assertIn(f"{axis}: scene 0 of heart", page, "one scene at each level")
         self.assertNotIn("selection_errors: scene", page, "which no picture shows")
 
+    def test_some_axes_and_arms_alone_end_as_in_the_whole_suite(self):
+        said = self.call(*self.run_of_class, "--axes", "object_size:4,light_intensity", "--arms", "paraphrase_1", "--tables",
+                         "--out", "part").stdout
+        self.assertIn("only these were played: object_size 4; light_intensity; paraphrase_1", " ".join(said.split()))
+        self.assert_matches_schemas("part")
+        played = {"control", "object_size_4", "light_intensity_1", "light_intensity_4", "paraphrase_1"}
+        whole = {cell["method"]["name"]: key for key, (cell, _) in self.cells("run").items()}
+        for key, (cell, _) in self.cells("part").items():
+            self.assertNotEqual(key, whole[cell["method"]["name"]])
+            for file in "episodes.jsonl", "perturbed.jsonl":
+                part, all_arms = ((self.dir / run / file).read_text().splitlines()
+                                  for run in (f"part/cells/{key}", f"run/cells/{whole[cell['method']['name']]}"))
+                self.assertEqual({json.loads(line)["arm"] for line in part}, played)
+                self.assertEqual(part, [line for line in all_arms if json.loads(line)["arm"] in played])
+        summary = json.loads((self.dir / "part/summary.json").read_text())
+        self.assertEqual({row["arm"] for row in summary["rows"]} - {"(mean)"}, played)
+        self.call("verify", "part", "--sample", "1", "--seed", "1")
+        # What is not played asks nothing of the engine.
+        self.call("run", "perturbations", "--engines", "kinematic", "--axes", "camera_turn:1", "--dry-run")
+
     def test_demonstrations_seen_through_an_axis(self):
         small = ["run", "q1", "--scenarios", "heart", "--methods", "lga,gcbc_dart", "--demos", "4", "--seeds", "0",
                  "--episodes", "1", "--set", "*.epochs=3"]

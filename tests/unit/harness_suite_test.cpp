@@ -8,6 +8,7 @@
 #include <set>
 
 #include <lgabench/core/hash.hpp>
+#include <lgabench/harness/costs.hpp>
 #include <lgabench/harness/expand.hpp>
 #include <lgabench/harness/run_directory.hpp>
 #include <lgabench/harness/schedule.hpp>
@@ -434,6 +435,42 @@ TEST(TrainOn, IsASettingOfMethodsAlone) {
   EXPECT_SAYS(refusal({{"sensor", 1}}), "no axis \"sensor\" (did you mean \"sensor_noise\"?)");
   EXPECT_SAYS(refusal({{"sensor_noise", 5}}), "/train_on/sensor_noise: expected a level from 1 to 4 (");
   EXPECT_SAYS(refusal({{"sensor_noise", "every"}}), "/train_on/sensor_noise: expected a level, or \"any\"");
+}
+
+TEST(PlayedArms, LeaveTheOthersInTheScenarioUnplayed) {
+  const Suite suite = load_suite("perturbations");
+  Design design = suite.design;
+  design.scenarios = {"heart"}, design.engines = {"e"}, design.methods = {"a"}, design.options = Json::object();
+  const auto cells = [&](const std::optional<PlayedArms>& played) {
+    Variation variation{NoAnswers()};
+    variation.played = played;
+    return expand(suite, design, variation, catalogue());
+  };
+  const std::vector<Cell> whole = cells({});
+  EXPECT_FALSE(whole.front().scenario->contains("played"));
+  const PlayedArms some{{{"object_size", {2, 4}}, {"light_colour", {}}}, {"paraphrase_3"}};
+  const std::vector<Cell> part = cells(some);
+  ASSERT_EQ(part.size(), whole.size());
+  EXPECT_EQ(part.front().scenario->at("played"),
+            Json({"control", "object_size_2", "object_size_4", "paraphrase_3", "light_colour_1", "light_colour_2",
+                  "light_colour_3", "light_colour_4"}));
+  EXPECT_NE(key(part.front()), key(whole.front()));
+  Json others = *part.front().scenario;
+  others.erase("played");
+  EXPECT_EQ(others, *whole.front().scenario) << "world and commands are the whole suite's";
+  EXPECT_EQ(usual_seconds(part.front()) < usual_seconds(whole.front()), true);
+  EXPECT_EQ(to_json(some)["axes"][0], Json({{"axis", "object_size"}, {"levels", {2, 4}}}));
+  EXPECT_EQ(played_arms(others).size(), others["tests"].size());
+
+  others["played"] = {"object_size_2"};
+  const auto read = [&] { return message_of<InputError>([&] { read_scenario(others, "mine"); }); };
+  EXPECT_SAYS(read(), "mine: /played: expected the first arm among them");
+  others["played"] = {"control", "moon"};
+  EXPECT_SAYS(read(), "mine: /played/1: expected an arm of \"tests\"");
+  const auto refusal = [&](const PlayedArms& played) { return message_of<InputError>([&] { cells(played); }); };
+  EXPECT_SAYS(refusal({{{"sensor", {}}}, {}}), "--axes: no axis \"sensor\" (did you mean \"sensor_noise\"?)");
+  EXPECT_SAYS(refusal({{{"all", {5}}}, {}}), "--axes: all has no level 5 here, expected one of: 1, 2, 3, 4");
+  EXPECT_SAYS(refusal({{}, {"moon"}}), "--arms: no arm \"moon\", expected one of: control, ");
 }
 
 TEST(Names, AreASettingOfMethodsAloneAndNameTheRow) {

@@ -96,8 +96,9 @@ std::string why_not_read(const Scenario& scenario, const Reading& reading) {
   if (reading.needs_library() && !fs::is_directory(data_directory() / "readers" / scenario.environment))
     return fmt::format("nothing learned to read pictures of {}", scenario.environment);
   const EnvironmentType& environment = find_environment(scenario.environment);
-  for (const Arm& arm : scenario.tests)
-    if (arm.label_noise != 0 || arm.missed_segment != 0 || environment.perception(*arm.scenes))
+  for (const std::string& id : played_arms(scenario.json))
+    if (const Arm& arm = scenario.arm(id);
+        arm.label_noise != 0 || arm.missed_segment != 0 || environment.perception(*arm.scenes))
       return fmt::format("arm {} makes errors in the names, which reading would overwrite", arm.id);
   return "";
 }

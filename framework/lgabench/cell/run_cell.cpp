@@ -140,7 +140,8 @@ DemonstratedScenes shown_to(const Cell& cell, const Scenario& scenario) {
 // `empty`: of every scene, since nothing was learned.
 std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell, bool empty, const Selected& selected) {
   std::vector<TestScene> scenes;
-  for (const Arm& arm : scenario.tests) {
+  for (const std::string& id : played_arms(scenario.json)) {
+    const Arm& arm = scenario.arm(id);
     const Perception perception = perception_of(scenario, arm, cell.scenes_of_seed());
     for (int i = 0; i < cell.episodes; ++i) {
       Scene scene = test_scene(scenario, cell.layout, arm.id, cell.scene_seed, i, cell.scenes_of_seed());

@@ -14,6 +14,7 @@
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/answers.hpp>
+#include <lgabench/harness/expand.hpp>
 #include <lgabench/harness/suite.hpp>
 #include <lgabench/host/python_method.hpp>
 #include <lgabench/plugin/loader.hpp>
@@ -122,8 +123,8 @@ void print_list(const Json& all, const std::string& kind, bool is_short) {
     to_stderr("refused: {}: {}\n", row["file"].get<std::string>(), row["reason"].get<std::string>());
 }
 
-constexpr std::array kinds{"methods",   "rows",    "engines", "perturbations", "environments", "suites",
-                           "scenarios", "layouts", "presets", "sources",       "axes",         "kinds"};
+constexpr std::array kinds{"methods", "rows",    "engines", "perturbations", "environments", "suites", "scenarios",
+                           "layouts", "presets", "sources", "axes",          "arms",         "kinds"};
 
 std::vector<std::string> layouts_of_all(const Suite& suite) {
   std::vector<std::string> common = layouts_of(load_scenario(suite.design.scenarios.front()));
@@ -172,7 +173,14 @@ std::vector<std::string> words(const std::string& kind, const std::string& of, c
   if (!of.empty()) suites.push_back(load_suite(of));
   for (const Json& suite : of.empty() ? shipped : Json::array()) suites.push_back(load_suite(suite.at("id")));
   std::set<std::string> found;
-  if (kind == "presets")
+  if (kind == "arms" || (kind == "perturbations" && !of.empty()))
+    for (const Suite& suite : suites) {
+      const SuiteArms arms = arms_of(suite, suite.design);
+      if (kind == "arms") found.insert(arms.ids.begin(), arms.ids.end());
+      if (kind == "perturbations")
+        for (const auto& axis : arms.axes) found.insert(axis.first);
+    }
+  else if (kind == "presets")
     for (const Suite& suite : suites)
       for (const auto& preset : suite.presets.items()) found.insert(preset.key());
   else

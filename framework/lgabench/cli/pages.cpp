@@ -83,6 +83,8 @@ constexpr const char* word_functions =
     "    SOURCE) _lgabench_list sources --of \"$2\" || _lgabench_list sources ;;\n"
     "    KIND) _lgabench_list kinds ;;\n"
     "    AXIS) _lgabench_list axes ;;\n"
+    "    AXIS,...) _lgabench_list perturbations --of \"$2\" || _lgabench_list perturbations ;;\n"
+    "    ARM,...) _lgabench_list arms --of \"$2\" ;;\n"
     "    PRESET) _lgabench_list presets --of \"$2\" || _lgabench_list presets ;;\n"
     "  esac\n"
     "}\n"

@@ -73,6 +73,21 @@ Json train_on(const std::string& words) {
   return {{words.substr(0, colon), level == "any" ? Json(level) : number}};
 }
 
+// Of "AXIS" or "AXIS:LEVEL+LEVEL" each. Which there are is known once scenarios are read.
+std::vector<DesignAxis> played_axes(const Words& words) {
+  std::vector<DesignAxis> all;
+  for (const std::string& word : words) {
+    const std::size_t colon = word.find(':');
+    DesignAxis& axis = all.emplace_back(DesignAxis{word.substr(0, colon), {}});
+    if (colon == std::string::npos) continue;
+    for (const std::string& level : CLI::detail::split(word.substr(colon + 1), '+'))
+      if (!CLI::detail::lexical_cast(level, axis.levels.emplace_back()))
+        throw InputError(
+            fmt::format("--axes: expected AXIS or AXIS:LEVEL+LEVEL, such as camera_turn:1+4; got \"{}\"", word));
+  }
+  return all;
+}
+
 constexpr const char* command_line_place = "command line";
 
 // "--demos: expected each value once" for "command line: /demonstrations/1: expected each value once".
@@ -207,6 +222,8 @@ PlannedRun plan_run(RunArguments a) {
   const Design design = design_of(a, suite);
   Variation variation{read_answer_source(a.answers), options_of(a.settings), !a.no_reference, read_truth(a.truth)};
 
+  if (!a.axes.empty() || !a.arms.empty()) variation.played = PlayedArms{played_axes(a.axes), a.arms};
+
   RunPlan& plan = planned.plan;
   plan.live = live_model(a, variation.answers, plan.live_about);
   if (auto* cassette = std::get_if<CassetteAnswers>(&variation.answers)) {
@@ -239,6 +256,7 @@ PlannedRun plan_run(RunArguments a) {
                        {"set", variation.options},
                        {"references", variation.references},
                        {"limit", a.limit}});
+  if (variation.played) plan.request["played"] = to_json(*variation.played);
   plan.command = shell_line(command_line());
   plan.program = a.program;
   plan.out = a.out;
@@ -271,6 +289,11 @@ void add_run_options(Verb& verb, RunArguments& a) {
       "use only METHOD's Selections, while the shipped lga+policy=heat_map learns and acts");
   verb.option("--engines ENGINE,...", a.engines, "Engines, by plugin id");
   verb.option("--scenarios SCENARIO,...", a.scenarios, "Scenarios");
+  verb.option("--axes AXIS,...", a.axes,
+              "Of the perturbations only these axes, with the control; AXIS:LEVEL+LEVEL for some levels. Outcomes are "
+              "those of the whole suite");
+  verb.option("--arms ARM,...", a.arms,
+              "Of the arms only these, with each scenario's first one: `lgabench list arms --of SUITE`");
   verb.option("--layout LAYOUT,...", a.layouts,
               "How objects are placed: `lgabench list layouts --of SUITE`; separate several with commas", rare);
   verb.option("--demos N,...", a.demonstrations, "Numbers of demonstrations per seen command, such as 10,20");

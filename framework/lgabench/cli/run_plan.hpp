@@ -15,7 +15,8 @@ namespace lgabench::cli {
 struct RunArguments {
   std::string suite, preset, python = "python3", answers = "recorded", truth = "released", humans, out, cache, debug,
                              shard = "1/1", model, cassette, request, train_on;
-  Words methods, engines, scenarios, layouts, demonstrations, seeds, settings, selection_errors, names, segments;
+  Words methods, engines, scenarios, layouts, demonstrations, seeds, settings, selection_errors, names, segments, axes,
+      arms;
   std::vector<fs::path> plugin_path;
   std::optional<int> episodes;
   std::optional<std::int64_t> scene_seed;

@@ -106,6 +106,16 @@ void add_words(Scenario& scenario) {
   }
 }
 
+// The first arm is what others are compared with.
+void expect_played(const JsonReader& list, const Scenario& scenario) {
+  const std::vector<std::string> played = list.strings();
+  for (const JsonReader& one : list.elements())
+    if (std::none_of(scenario.tests.begin(), scenario.tests.end(),
+                     [&](const Arm& arm) { return arm.id == one.string(); }))
+      one.fail("an arm of \"tests\"");
+  if (std::count(played.begin(), played.end(), scenario.tests.front().id) == 0) list.fail("the first arm among them");
+}
+
 double read_probability(const JsonReader& reader) {
   const double p = reader.number();
   if (!(p >= 0 && p <= 1)) reader.fail("a probability");
@@ -220,7 +230,7 @@ Scenario read_scenario(const Json& json, const std::string& file) {
   const std::vector<std::string> own = environment.scenario_members(task), of_scenes = environment.scene_members(task);
   std::vector<std::string> members = own;
   members.insert(members.end(), {"id", "environment", "task", "feature_space", "commands", "answers_of", "answers",
-                                 "train", "tests", "questions", "axes", "truth", "printed", "note"});
+                                 "train", "tests", "played", "questions", "axes", "truth", "printed", "note"});
   reader.only(members);
   if (reader.has("printed")) {
     std::vector<std::string> replaced = own;
@@ -256,11 +266,20 @@ Scenario read_scenario(const Json& json, const std::string& file) {
   }
   expect_arms(reader.at("commands"), s);
   if (s.tests.empty()) reader.at("tests").fail("at least one arm");
+  if (reader.has("played")) expect_played(reader.at("played"), s);
   if (s.commands_of("train").empty()) reader.at("commands").fail("at least one seen command");
   s.json = json;
   keep_axes_of_arms(s);
   add_words(s);
   return s;
+}
+
+std::vector<std::string> played_arms(const Json& scenario) {
+  const JsonReader reader(scenario, "scenario");
+  if (reader.has("played")) return reader.at("played").strings();
+  std::vector<std::string> all;
+  for (const JsonReader& arm : reader.at("tests").elements()) all.push_back(arm.at("arm").string());
+  return all;
 }
 
 std::vector<std::string> Scenario::utterances() const {

@@ -96,6 +96,10 @@ Scenario read_scenario(const Json& json, const std::string& file);
 /// under "printed" stands in its place, and "truth" says so. @throws InputError that lists the known ids.
 Scenario load_scenario(const std::string& id, Truth truth = Truth::released);
 
+/// Ids of the arms that a scenario's JSON has played: those that "played" names, else all. The others shape the
+/// engine's world and the commands as if they were, so that outcomes are the same. @throws InputError
+std::vector<std::string> played_arms(const Json& scenario);
+
 /// "released" or "printed". @throws InputError for another word.
 Truth read_truth(const std::string& word);
 

@@ -78,7 +78,8 @@ double usual_seconds(const Cell& cell) {
   const double demonstrations = cell.demonstrations * count(*cell.scenario, "commands", [](const Json& c) {
                                   return !c.is_object() || c.value("seen", Json()) != false;
                                 });
-  const double episodes = cell.episodes * count(*cell.scenario, "tests", [](const Json&) { return true; });
+  const double episodes = cell.episodes * count(*cell.scenario, cell.scenario->contains("played") ? "played" : "tests",
+                                                [](const Json&) { return true; });
   const double learn_s = options.value("policy", Json()) == "heat_map" ? heat_map_s * std::min(demonstrations, 16.)
                                                                        : demonstrations * passes * learn_ms / 1000;
   return start_s + demonstrations * demonstration_s + learn_s + episodes * episode_s;

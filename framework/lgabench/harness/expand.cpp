@@ -1,6 +1,7 @@
 #include <lgabench/harness/expand.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -113,19 +114,48 @@ void expect_read(const Suite& suite, const Scenario& scenario, const std::vector
       throw InputError(fmt::format("{}: /names{}: scenario {}: {}", suite.file, reading.suffix(), scenario.id, why));
 }
 
+std::vector<const PerturbationAxis*> axes_in(const Scenario& scenario, const std::string& arm) {
+  const std::optional<Perturbation>& perturbation = scenario.arm(arm).perturbation;
+  return perturbation ? axes_of(scenario, *perturbation) : std::vector<const PerturbationAxis*>();
+}
+
 // A perturbation of what the engine does not simulate would be none.
 void expect_dynamics(const Scenario& scenario, const PluginInfo& engine) {
   if (!engine.kinematic) return;
-  for (const Arm& arm : scenario.tests)
-    for (const PerturbationAxis* axis :
-         arm.perturbation ? axes_of(scenario, *arm.perturbation) : std::vector<const PerturbationAxis*>()) {
-      const BodyVariants bodies = axis->bodies ? axis->bodies(arm.perturbation->level) : BodyVariants();
+  for (const std::string& id : played_arms(scenario.json))
+    for (const PerturbationAxis* axis : axes_in(scenario, id)) {
+      const BodyVariants bodies = axis->bodies ? axis->bodies(scenario.arm(id).perturbation->level) : BodyVariants();
       if (bodies.friction != 1 || bodies.mass != 1)
         throw InputError(
             fmt::format("scenario {}, arm {}: {} on the engine {}, whose bodies have neither friction nor "
                         "mass: expected another engine, or other perturbations",
-                        scenario.id, arm.id, axis->id, engine.id));
+                        scenario.id, id, axis->id, engine.id));
     }
+}
+
+bool plays(const PlayedArms& played, const Arm& arm) {
+  const std::optional<Perturbation>& one = arm.perturbation;
+  return has(played.arms, arm.id) || std::any_of(played.axes.begin(), played.axes.end(), [&](const DesignAxis& axis) {
+           return one && axis.axis == one->axis &&
+                  (axis.levels.empty() || std::count(axis.levels.begin(), axis.levels.end(), one->level) > 0);
+         });
+}
+
+// What is asked for must be in one of the scenarios.
+void expect_arms(const PlayedArms& played, const SuiteArms& there, const Suite& suite) {
+  for (const std::string& arm : played.arms)
+    if (!has(there.ids, arm)) throw InputError("--arms: " + none_named("arm", arm, there.ids));
+  std::vector<std::string> axes;
+  for (const auto& axis : there.axes) axes.push_back(axis.first);
+  for (const DesignAxis& axis : played.axes) {
+    if (axes.empty()) throw InputError(fmt::format("--axes: {} has no perturbations here", suite.id));
+    if (!has(axes, axis.axis)) throw InputError("--axes: " + none_named("axis", axis.axis, axes));
+    const std::set<int>& levels = there.axes.at(axis.axis);
+    for (const int level : axis.levels)
+      if (levels.count(level) == 0)
+        throw InputError(fmt::format("--axes: {} has no level {} here, expected one of: {}", axis.axis, level,
+                                     fmt::join(levels, ", ")));
+  }
 }
 
 // A suite's scenarios may be of several tasks, each with layouts of its own.
@@ -210,6 +240,22 @@ Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, 
   return read_scenario(json, fmt::format("{}: scenario {} with the suite's members", suite.file, id));
 }
 
+SuiteArms arms_of(const Suite& suite, const Design& design) {
+  SuiteArms all;
+  for (const std::string& id : suite_scenario_ids(suite, design))
+    for (const Arm& arm : suite_scenario(suite, id, Truth::released, &design).tests) {
+      if (!has(all.ids, arm.id)) all.ids.push_back(arm.id);
+      if (arm.perturbation) all.axes[arm.perturbation->axis].insert(arm.perturbation->level);
+    }
+  return all;
+}
+
+Json to_json(const PlayedArms& played) {
+  Json json{{"arms", played.arms}, {"axes", Json::array()}};
+  for (const DesignAxis& axis : played.axes) json["axes"].push_back({{"axis", axis.axis}, {"levels", axis.levels}});
+  return json;
+}
+
 bool learns(const Competitor& row) {
   if (!row.is_reference()) return true;
   const ReferenceRow* const reference = find_reference_row(row.id);
@@ -220,6 +266,7 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
                          const Catalogue& catalogue) {
   const std::vector<Competitor> methods = competitors(suite, design, variation.options, catalogue);
   for (const std::string& engine : design.engines) catalogue.find("engine", engine);
+  if (variation.played) expect_arms(*variation.played, arms_of(suite, design), suite);
   if (!variation.participants.empty() && std::none_of(methods.begin(), methods.end(), asks_people))
     throw InputError("--humans: expected a method that asks people, such as human or lga_hill; this run has none");
 
@@ -233,7 +280,12 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
   const std::vector<Reading> readings = readings_of(suite, design, catalogue);
   std::vector<Cell> cells;
   for (const std::string& id : suite_scenario_ids(suite, design)) {
-    const Scenario scenario = suite_scenario(suite, id, variation.truth, &design);
+    Scenario scenario = suite_scenario(suite, id, variation.truth, &design);
+    if (variation.played) {
+      const std::string control = scenario.tests.front().id;
+      for (const Arm& arm : scenario.tests)
+        if (arm.id == control || plays(*variation.played, arm)) scenario.json["played"].push_back(arm.id);
+    }
     expect_own_scenes(suite, design, scenario);
     expect_layouts(scenario, design.layouts);
     expect_errors_possible(suite, scenario, all_errors);

@@ -1,5 +1,8 @@
 // From a design to the cells of a run.
 #pragma once
+#include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -11,6 +14,13 @@
 
 namespace lgabench {
 
+/// The arms that are asked for, in place of all. Each scenario's first one is played with them, as their control.
+struct PlayedArms {
+  std::vector<DesignAxis> axes;  // perturbations; without levels all that there are
+  std::vector<std::string> arms;
+};
+Json to_json(const PlayedArms& played);
+
 /// What is not part of the design.
 struct Variation {
   AnswerSource answers;
@@ -18,6 +28,7 @@ struct Variation {
   bool references = true;         // add the reference rows
   Truth truth = Truth::released;
   std::vector<Participant> participants{};  // none: the truth stands in for people
+  std::optional<PlayedArms> played{};       // none: all
 };
 
 /// Ids of the scenarios that the design names, as they are in the suite: of its variants, where it has any.
@@ -26,6 +37,12 @@ std::vector<std::string> suite_scenario_ids(const Suite& suite, const Design& de
 /// those of the perturbations; the suite's design where none is given. @throws InputError for one of another
 /// environment.
 Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, const Design* design = nullptr);
+/// What a run of the design may play: the arms of all its scenarios, and the levels of each axis that they have.
+struct SuiteArms {
+  std::vector<std::string> ids;
+  std::map<std::string, std::set<int>> axes;
+};
+SuiteArms arms_of(const Suite& suite, const Design& design);
 /// A cell of the design without its layout, engine, method, demonstrations and training seed.
 Cell unplayed_cell(const Suite& suite, const Design& design, const Scenario& scenario, const AnswerSource& answers);
 
@@ -36,7 +53,8 @@ bool learns(const Competitor& row);
 /// Every cell of the design: scenario by scenario, reference rows after the methods. With participants a cell of a
 /// method that asks people for each one who specified, or edited, all commands of the scenario; none where nobody did.
 /// @throws as competitors(); PluginError for an unknown engine, InputError for a layout that a scenario lacks, for a
-/// method that no participant answered at all, and for participants whom no method asks.
+/// method that no participant answered at all, for participants whom no method asks, and for arms to be played that
+/// there are none of.
 std::vector<Cell> expand(const Suite& suite, const Design& design, const Variation& variation,
                          const Catalogue& catalogue);
 

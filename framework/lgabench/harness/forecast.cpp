@@ -63,7 +63,8 @@ Forecast forecast(const std::vector<const Cell*>& complete, const std::vector<co
     row.seconds += seconds;
     all.work_s += seconds;
     all.longest_s = std::max(all.longest_s, seconds);
-    all.run_bytes += cell_bytes + episode_bytes * cell.episodes * number(*cell.scenario, "tests");
+    all.run_bytes += cell_bytes + episode_bytes * cell.episodes *
+                                      number(*cell.scenario, cell.scenario->contains("played") ? "played" : "tests");
     double& most = demonstrations[{cell.scenario_id(), cell.layout, cell.engine, row.name, cell.training_seed}];
     most = std::max(most, cell.demonstrations * number(*cell.scenario, "commands"));
   };

@@ -142,7 +142,9 @@ void read_configuration(const fs::path& directory, CellResult& result) {
   }
   result.demonstrated_commands = static_cast<int>(
       std::count_if(result.commands.begin(), result.commands.end(), [](const CommandResult& c) { return c.seen; }));
+  const auto played = scenario.has("played") ? std::optional(scenario.at("played").strings()) : std::nullopt;
   for (const JsonReader& arm : scenario.at("tests").elements()) {
+    if (played && std::count(played->begin(), played->end(), arm.at("arm").string()) == 0) continue;
     result.arms.push_back(shown(arm.at("arm")));
     if (arm.has("perturbation")) result.perturbations[result.arms.back()] = perturbation_of(arm.at("perturbation"));
   }

@@ -88,6 +88,16 @@ std::vector<std::string> settings(const RunResults& run) {
     lines.emplace_back("each training seed plays test scenes of its own");
   if (const std::string through = seen_through(run); !through.empty())
     lines.push_back("methods saw their demonstrations through " + through);
+  if (const Json played = run.record.request.value("played", Json()); played.is_object()) {
+    std::vector<std::string> some;
+    for (const Json& axis : played.value("axes", Json::array())) {
+      some.push_back(axis.value("axis", ""));
+      if (const auto levels = axis.value("levels", std::vector<int>()); !levels.empty())
+        some.back() += fmt::format(" {}", fmt::join(levels, ", "));
+    }
+    for (const Json& arm : played.value("arms", Json::array())) some.push_back(arm.get<std::string>());
+    lines.push_back("beside first arms, only these were played: " + one_line(fmt::format("{}", fmt::join(some, "; "))));
+  }
   for (const std::string& line : remarks(run)) lines.push_back(line);
   return lines;
 }
