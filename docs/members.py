@@ -14,7 +14,7 @@ FORMATS = pathlib.Path(__file__).parent / "formats"
 PAGES = {
     "run-members": ("Members of a run's files", [
         "run", "cell", "selection", "training", "episodes", "perturbed", "timing", "status", "shown", "summary", "claims", "report_data",
-        "compare", "verify", "check_plugin"]),
+        "compare", "verify", "rescored", "check_plugin"]),
     "input-members": ("Members of scenarios, suites and answers", [
         "scenario", "suite", "suite_claims", "lexicon", "recorded_answers", "cassette", "disputed", "paper_claims", "paper_methods"]),
     "study-members": ("Members of a study's files", ["study_protocol", "participant", "study_events", "study_results"]),

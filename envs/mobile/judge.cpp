@@ -1,6 +1,8 @@
 #include <mobile/judge.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include <mobile/receivers.hpp>
 
@@ -20,14 +22,19 @@ bool rests_in(const Vessel& vessel, Vec3 centre) {
          centre.z < vessel.rim_m + leaning_m;
 }
 
+double off_m(Vec3 centre, const Task& task) {
+  return std::hypot(centre.x - task.goal.centre.x, centre.y - task.goal.centre.y);
+}
+
 }  // namespace
 
 Failure judge(const Scene& scene, const Task& task, const std::vector<Pose>& before, const std::vector<Pose>& now,
-              std::size_t taken) {
+              std::size_t taken, const JudgeLimits& limits) {
   const Vec3 centre = centre_of(scene.objects[taken], now[taken]);
   for (const Vessel& wrong : task.wrong)
     if (rests_in(wrong, centre)) return failure::wrong_receiver;
-  if (!rests_in(task.goal, centre)) return failure::dropped_elsewhere;
+  if (!rests_in(task.goal, centre) || (limits.position_m && off_m(centre, task) > *limits.position_m))
+    return failure::dropped_elsewhere;
   for (std::size_t i = 0; i < now.size(); ++i) {
     if (i == taken) continue;
     const Vec3 is = centre_of(scene.objects[i], now[i]), way = is - centre_of(scene.objects[i], before[i]);
@@ -48,6 +55,14 @@ std::vector<Gap> gaps(const Scene& scene, const Task& task, const std::vector<Po
     others_m = std::max({others_m, fallen_m - is.z, std::sqrt(dot(way, way)) - moved_m});
   }
   return {{"place_m", std::hypot(aside_m, below_m)}, {"others_m", others_m}};
+}
+
+double off_m(const Scene& scene, const Task& task, const std::vector<Pose>& now) {
+  double least_m = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < now.size(); ++i)
+    if (scene.objects[i].role == role::target)
+      least_m = std::min(least_m, off_m(centre_of(scene.objects[i], now[i]), task));
+  return least_m;
 }
 
 }  // namespace lgabench::mobile

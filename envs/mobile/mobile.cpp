@@ -88,10 +88,16 @@ class Mobile final : public Environment {
     const Plan plan = executable(plans(), action);
     StepResult result;
     result.terminated = true;
-    result.failure = carry_out(plan, result);
+    brought_.reset();
+    result.failure = ended_ = carry_out(plan, result);
     result.is_success = result.failure == failure::none;
     result.observation = observe();
     return result;
+  }
+
+  Rejudged judged_again(const JudgeLimits& limits) const override {
+    const std::vector<Pose> now = poses();
+    return {brought_ ? judge(scene_, task_, before_, now, *brought_, limits) : ended_, off_m(scene_, task_, now)};
   }
 
   std::vector<EngineBody> bodies() const override {
@@ -238,6 +244,7 @@ class Mobile final : public Environment {
     result.gaps.resize(3);
     for (Gap& gap : gaps(scene_, task_, before_, poses(), taken)) result.gaps.push_back(std::move(gap));
     if (result.truncated) return failure::truncated;
+    brought_ = taken;
     return judge(scene_, task_, before_, poses(), taken);
   }
 
@@ -252,6 +259,8 @@ class Mobile final : public Environment {
   Scene scene_;
   mutable std::vector<VisibleObject> objects_;  // in the scene's order, at their poses now
   std::vector<Pose> before_;
+  Failure ended_ = failure::none;       // of the last step()
+  std::optional<std::size_t> brought_;  // which object it took to the end, if any
 };
 
 class MobileType final : public EnvironmentType {

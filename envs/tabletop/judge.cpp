@@ -1,6 +1,7 @@
 #include <tabletop/judge.hpp>
 
 #include <algorithm>
+#include <limits>
 
 #include <common/objects.hpp>
 #include <tabletop/oracle.hpp>
@@ -24,7 +25,7 @@ double outside_m(Vec2 p) {
 
 }  // namespace
 
-Failure judge(const Scene& scene, const std::vector<Pose>& poses, const Motion& motion) {
+Failure judge(const Scene& scene, const std::vector<Pose>& poses, const Motion& motion, const JudgeLimits& limits) {
   const Task& task = find_task(scene.task);
   const std::vector<Final> finals = finals_of(scene, poses);
   expect(scene, role::target);
@@ -39,7 +40,7 @@ Failure judge(const Scene& scene, const std::vector<Pose>& poses, const Motion& 
   Failure of_taken = failure::none;
   for (const Final& f : finals) {
     if (f.object.role != role::target) continue;
-    const Failure word = task.judge(scene, f, finals);
+    const Failure word = task.judge(scene, f, finals, limits);
     if (word == failure::none) return word;
     if (&f.object == taken) of_taken = word;
   }
@@ -63,7 +64,7 @@ std::vector<Gap> gaps(const Scene& scene, const TwoPoses& action, const std::vec
   for (std::size_t i = 0; i < finals.size(); ++i) {
     furthest_m = std::max(furthest_m, outside_m(finals[i].centre_m));
     if (finals[i].object.role != role::target || taken) continue;
-    taken = success ? task.judge(scene, finals[i], finals) == failure::none : static_cast<int>(i) == motion.taken;
+    taken = success ? task.judge(scene, finals[i], finals, {}) == failure::none : static_cast<int>(i) == motion.taken;
     const double away_m = taken ? 0 : reach_m(i);
     if (target != finals.size() && !taken && away_m >= least_m) continue;
     target = i;
@@ -73,6 +74,15 @@ std::vector<Gap> gaps(const Scene& scene, const TwoPoses& action, const std::vec
   for (Gap& gap : task.gaps(scene, finals[target], finals, motion)) all.push_back(std::move(gap));
   all.push_back({"outside_m", furthest_m});
   return all;
+}
+
+double off_m(const Scene& scene, const std::vector<Pose>& poses) {
+  expect(scene, role::target);
+  const std::vector<Final> finals = finals_of(scene, poses);
+  double least_m = std::numeric_limits<double>::infinity();
+  for (const Final& f : finals)
+    if (f.object.role == role::target) least_m = std::min(least_m, find_task(scene.task).off_m(scene, f, finals));
+  return least_m;
 }
 
 }  // namespace lgabench::tabletop

@@ -80,6 +80,7 @@ class Tabletop final : public Environment {
     if (went_wrong_ == failure::none) went_wrong_ = motion.failure;
     motion.failure = went_wrong_;
     const std::vector<Pose> reached = poses();
+    last_ = motion;
     StepResult result;
     result.observation = observe();
     result.terminated = true;
@@ -90,6 +91,11 @@ class Tabletop final : public Environment {
     if (motion.taken != no_body) result.taken = scene_.objects[static_cast<std::size_t>(motion.taken)].instance_id;
     result.recoverable = !result.truncated && result.failure != failure::left_workspace && went_wrong_ == failure::none;
     return result;
+  }
+
+  Rejudged judged_again(const JudgeLimits& limits) const override {
+    const std::vector<Pose> reached = poses();
+    return {judge(scene_, reached, last_, limits), off_m(scene_, reached)};
   }
 
   std::vector<EngineBody> bodies() const override {
@@ -143,6 +149,7 @@ class Tabletop final : public Environment {
   std::vector<bool> fixed_;
   View view_;
   bool shadows_ = false;
+  Motion last_;                         // what step() carried out
   Failure went_wrong_ = failure::none;  // in a motion since the scene's beginning
 };
 

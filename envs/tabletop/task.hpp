@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/core/environment.hpp>
 #include <lgabench/core/environments.hpp>
 #include <tabletop/content.hpp>
 #include <tabletop/motions.hpp>
@@ -69,7 +70,10 @@ class Task {
                                  std::size_t object) const = 0;
   /// Did that target end as the task asks? All bodies rest, within the workspace. Pure. `finals` in the order of
   /// scene.objects. @returns failure::none or one of failures(). @throws InputError where the scene lacks an object.
-  virtual Failure judge(const Scene& scene, const Final& target, const std::vector<Final>& finals) const = 0;
+  virtual Failure judge(const Scene& scene, const Final& target, const std::vector<Final>& finals,
+                        const JudgeLimits& limits) const = 0;
+  /// How far that target's centre is from where the task asks for it, in metres. Pure. @throws InputError likewise.
+  virtual double off_m(const Scene& scene, const Final& target, const std::vector<Final>& finals) const = 0;
   /// How far judge() is from success with that target: the same parts in every scene, all 0 where it succeeds.
   virtual std::vector<Gap> gaps(const Scene& /*scene*/, const Final& /*target*/, const std::vector<Final>& /*finals*/,
                                 const Motion& /*motion*/) const {

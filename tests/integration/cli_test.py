@@ -359,7 +359,7 @@ class Completion(Case):
         return done.stdout.split()
 
     def test_of_commands_options_and_ids(self):
-        self.assertEqual(self.completed("re"), ["render", "report"])
+        self.assertEqual(self.completed("re"), ["render", "replay", "report", "rescore"])
         self.assertEqual(self.completed("run", "q1", "--dem"), ["--demos"])
         self.assertEqual(self.completed("run", "q1", "--scene"), ["--scene-seed"])
         self.assertEqual(self.completed("run", "fac"), ["factorial"])
@@ -395,6 +395,8 @@ class Completion(Case):
                     words += ["--scenarios", "heart"]
                 self.call("run", suite, *words, "--dry-run")
         self.assertEqual(self.completed("run", "q1", "--train-on", "sen"), ["sensor_noise"])
+        self.assertEqual(self.completed("run", "perturbations", "--axes", "all,camera_t"), ["all,camera_turn"])
+        self.assertEqual(self.completed("run", "clutter", "--arms", "near_4"), ["near_4"])
         self.assertEqual(self.completed("list", "lay"), ["layouts"])
         self.assertIn('no suite "q9"', self.call("list", "presets", "--of", "q9", expect=2).stderr)
 

@@ -50,8 +50,6 @@ class DocumentedCommands(Case):
         shutil.copy(SOURCE / "examples/python/lga_torch.py", self.dir)
         self.call("new-plugin", "my_method", "--kind", "python", "--directory", "python")
         shutil.copy(self.dir / "python/my_method.py", self.dir)
-        suite = (SOURCE / "envs/tabletop/suites/q2.json").read_text()
-        (self.dir / "my_suite.json").write_text(suite.replace('"id": "q2"', '"id": "my_suite"'))
 
         q1 = json.loads((SOURCE / "envs/tabletop/suites/q1.json").read_text())
         q1.update(id="q1_4711", scene_seed=4711, scenarios=[s for s in q1["scenarios"] if s != "letter"])
@@ -103,6 +101,8 @@ class DocumentedCommands(Case):
                             words[2] = next(key for key, (cell, _) in self.cells("run").items()) + "/0"
                         if verb == "new-scenario":
                             (self.dir / f"{shown[1]}.json").unlink(missing_ok=True)
+                        if verb == "new-suite":
+                            shutil.rmtree(self.dir / shown[1], ignore_errors=True)
                         if verb == "commands":
                             shutil.rmtree(self.dir / words[words.index("--out") + 1], ignore_errors=True)
                         self.call(*words)

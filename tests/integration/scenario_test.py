@@ -6,6 +6,7 @@ import json
 import os
 import re
 import shlex
+import subprocess
 import unittest
 
 from case import Case
@@ -161,6 +162,55 @@ class OwnScenario(Case):
         os.rename(self.dir / "heart.json", self.dir / "mine.json")
         done = self.call("render", "mine", "--scenario-path", ".", expect=2)
         self.assertIn('/id: expected "mine", as the file is named', done.stderr)
+
+
+class OwnSuite(Case):
+    def first_look(self, said):
+        """Runs the printed command for a first look. @returns success of each row in its summary."""
+        words = re.findall(r"^  lgabench (run .* --preset smoke.*)$", said, re.M)
+        self.call(*shlex.split(words[0]), "--out", "out")
+        self.assert_matches_schemas("out")
+        self.call("report", "out", "--claims")
+        claims = json.loads((self.dir / "out/claims.json").read_text())
+        self.assertIn("abstraction_helps", json.dumps(claims))
+        return json.loads((self.dir / "out/summary.json").read_text())["rows"]
+
+    def assert_suite(self, name):
+        self.assert_as_schema("suite", json.loads((self.dir / name / f"{name}.json").read_text()))
+        self.assert_as_schema("suite_claims", json.loads((self.dir / name / "claims" / f"{name}.json").read_text()))
+
+    def test_of_its_own_scenario_runs_at_once_and_the_truth_succeeds(self):
+        said = self.call("new-suite", "round_things", "--command", "Bring me something round.", "--types", "round,ring", "--hard",
+                         "--title", "Round things", "--question", "Does round help?").stdout
+        self.assert_suite("round_things")
+        self.assert_as_schema("scenario", json.loads((self.dir / "round_things/round_things_1.json").read_text()))
+        rows = self.first_look(said)
+        self.assertEqual({row["arm"] for row in rows}, {"test", "hard"})
+        for row in rows:
+            if row["method"] in ("human", "oracle"):
+                self.assertGreaterEqual(row["success"], .9, row)
+        page = (self.dir / "out/report.html").read_text()
+        self.assertIn("Does round help?", page)
+
+    def test_of_scenarios_that_there_are_has_the_language_model_too(self):
+        said = self.call("new-suite", "two", "--scenarios", "heart,letter").stdout
+        self.assert_suite("two")
+        self.assertNotIn("--answers none", said)
+        rows = self.first_look(said)
+        self.assertLessEqual({"lga", "human"}, {row["method"] for row in rows})
+        self.assertGreaterEqual(min(row["success"] for row in rows if (row["method"], row["scenario"]) == ("human", "heart")), .9)
+
+    def test_nothing_is_written_where_something_is_wrong(self):
+        for words, says in [((), "new-suite: expected --command TEXT"), (("--scenarios", "hart"), 'no scenario "hart"'),
+                            (("--scenarios", "heart,fetch_fruit"), "scenarios of one environment"),
+                            (("--command", "x", "--types", "hart"), "hart")]:
+            said = self.call("new-suite", "mine", *words, expect=2, stdin=subprocess.DEVNULL).stderr
+            self.assertEqual(said.count("\n"), 1, said)
+            self.assertIn(says, said)
+        self.assertIn("expected letters", self.call("new-suite", "a/b", "--scenarios", "heart", expect=2).stderr)
+        self.assertEqual(list(self.dir.iterdir()), [])
+        self.call("new-suite", "mine", "--scenarios", "heart")
+        self.assertIn("exists already", self.call("new-suite", "mine", "--scenarios", "heart", expect=2).stderr)
 
 
 if __name__ == "__main__":

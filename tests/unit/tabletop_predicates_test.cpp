@@ -159,6 +159,35 @@ TEST(Rotate, TheTargetStaysAndDistractorsAreNotDisturbed) {
   EXPECT_EQ(judge(scene, poses, took_target), "bad_placement");
 }
 
+TEST(OtherLimits, NarrowerOnesTakeSuccessAwayAndWiderOnesGiveIt) {
+  const auto brought = [](double off, const JudgeLimits& limits) {
+    const Scene scene = bring();
+    auto poses = start(scene);
+    poses[1].position_m = {.5, .3 + off, 0};
+    EXPECT_NEAR(off_m(scene, poses), off, 1e-12);
+    return judge(scene, poses, took_target, limits);
+  };
+  EXPECT_EQ(brought(.07, {}), failure::none);
+  EXPECT_EQ(brought(.07, {.06}), "bad_placement");
+  EXPECT_EQ(brought(.15, {.16}), failure::none);
+  Scene scene = bring();
+  auto poses = start(scene);
+  poses[1].position_m = {.5, .3, 0};
+  poses[0].position_m = {.5, .3 - .0999, 0};
+  EXPECT_EQ(judge(scene, poses, took_target, {.01}), "bad_placement")
+      << "a distractor on the goal spoils it all the same";
+
+  scene = turn(120);
+  poses = start(scene);
+  poses[1] = {{.6, -.04, 0}, from_yaw(1 + 130 * pi / 180)};
+  EXPECT_NEAR(off_m(scene, poses), .06, 1e-12);
+  EXPECT_EQ(judge(scene, poses, took_target), failure::none);
+  EXPECT_EQ(judge(scene, poses, took_target, {.05}), "bad_placement");
+  EXPECT_EQ(judge(scene, poses, took_target, {{}, 9}), "bad_angle");
+  poses[1].rotation = from_yaw(1 + 150 * pi / 180);
+  EXPECT_EQ(judge(scene, poses, took_target, {{}, 31}), failure::none);
+}
+
 // 0: distractor, 1: target, 2: obstacle.
 Scene sweep(const std::string& barred = "pan") {
   Scene scene;
@@ -179,6 +208,17 @@ TEST(Sweep, SucceedsInEitherZone) {
     EXPECT_EQ(at(.4801), "missed_zone");
     EXPECT_EQ(at(.51), "left_workspace");
   }
+}
+
+TEST(OtherLimits, InAStripItsMiddleMustBeNearToo) {
+  const Scene scene = sweep();
+  auto poses = start(scene);
+  poses[1].position_m = {.3, -.36, 0};
+  EXPECT_NEAR(off_m(scene, poses), .05, 1e-12);
+  EXPECT_EQ(judge(scene, poses, took_target, {.06}), failure::none);
+  EXPECT_EQ(judge(scene, poses, took_target, {.04}), "missed_zone");
+  poses[1].position_m.y = -.33;
+  EXPECT_EQ(judge(scene, poses, took_target, {1}), "missed_zone") << "the strip stays as it is painted";
 }
 
 TEST(Sweep, SaysWhatWentWrong) {

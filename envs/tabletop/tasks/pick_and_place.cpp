@@ -36,12 +36,17 @@ class PickAndPlace final : public Task {
     return bring(scene, poses, world, object, expect(scene, role::goal).position_m);
   }
 
-  Failure judge(const Scene& scene, const Final& target, const std::vector<Final>& finals) const override {
+  Failure judge(const Scene& scene, const Final& target, const std::vector<Final>& finals,
+                const JudgeLimits& limits) const override {
     const Vec2 goal = goal_of(scene, finals);
-    if (norm(target.centre_m - goal) > near_m) return failure::bad_placement;
+    if (off_m(scene, target, finals) > limits.position_m.value_or(near_m)) return failure::bad_placement;
     for (const Final& f : finals)
       if (is_other(f) && norm(f.centre_m - goal) <= near_m) return failure::bad_placement;
     return failure::none;
+  }
+
+  double off_m(const Scene& scene, const Final& target, const std::vector<Final>& finals) const override {
+    return norm(target.centre_m - goal_of(scene, finals));
   }
   std::vector<Gap> gaps(const Scene& scene, const Final& target, const std::vector<Final>& finals,
                         const Motion&) const override {
@@ -49,7 +54,7 @@ class PickAndPlace final : public Task {
     double others_m = 0;
     for (const Final& f : finals)
       if (is_other(f)) others_m = std::max(others_m, near_m - norm(f.centre_m - goal));
-    return {{"place_m", std::max(0., norm(target.centre_m - goal) - near_m)}, {"others_m", others_m}};
+    return {{"place_m", std::max(0., off_m(scene, target, finals) - near_m)}, {"others_m", others_m}};
   }
 
  private:

@@ -57,12 +57,18 @@ class Rotate final : public Task {
     return bring(scene, poses, world, object, target.position_m, std::remainder(left, 2 * pi));
   }
 
-  Failure judge(const Scene& scene, const Final& target, const std::vector<Final>& finals) const override {
-    if (norm(target.centre_m - target.object.position_m) > in_place_m) return failure::bad_placement;
+  Failure judge(const Scene& scene, const Final& target, const std::vector<Final>& finals,
+                const JudgeLimits& limits) const override {
+    if (off_m(scene, target, finals) > limits.position_m.value_or(in_place_m)) return failure::bad_placement;
     for (const Final& f : finals)
       if (f.object.role == role::distractor && norm(f.centre_m - f.object.position_m) > undisturbed_m)
         return failure::bad_placement;
-    return error_rad(scene, target) <= angle_tolerance_deg * pi / 180 ? failure::none : bad_angle;
+    const double most_deg = limits.angle_deg.value_or(angle_tolerance_deg);
+    return error_rad(scene, target) <= most_deg * pi / 180 ? failure::none : bad_angle;
+  }
+
+  double off_m(const Scene&, const Final& target, const std::vector<Final>&) const override {
+    return norm(target.centre_m - target.object.position_m);
   }
   std::vector<Gap> gaps(const Scene& scene, const Final& target, const std::vector<Final>& finals,
                         const Motion&) const override {
@@ -71,7 +77,7 @@ class Rotate final : public Task {
       if (f.object.role == role::distractor)
         others_m = std::max(others_m, norm(f.centre_m - f.object.position_m) - undisturbed_m);
     const double over_rad = std::max(0., error_rad(scene, target) - angle_tolerance_deg * pi / 180);
-    return {{"place_m", std::max(0., norm(target.centre_m - target.object.position_m) - in_place_m)},
+    return {{"place_m", std::max(0., off_m(scene, target, finals) - in_place_m)},
             {"turn_deg", over_rad * 180 / pi},
             {"others_m", others_m}};
   }

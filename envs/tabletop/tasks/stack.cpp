@@ -53,10 +53,17 @@ class Stack final : public Task {
   }
 
   // The centre is over the support's outline, and all of the target above half of the support's height.
-  Failure judge(const Scene& scene, const Final& target, const std::vector<Final>& finals) const override {
+  Failure judge(const Scene& scene, const Final& target, const std::vector<Final>& finals,
+                const JudgeLimits& limits) const override {
     const Final& onto = finals[static_cast<std::size_t>(&expect(scene, support) - scene.objects.data())];
     const double least_z = model_of(onto.object).height_m / 2;
-    return is_over(target, onto) && lowest_z(target) > least_z ? failure::none : failure::bad_placement;
+    const bool near = !limits.position_m || off_m(scene, target, finals) <= *limits.position_m;
+    return near && is_over(target, onto) && lowest_z(target) > least_z ? failure::none : failure::bad_placement;
+  }
+
+  double off_m(const Scene& scene, const Final& target, const std::vector<Final>& finals) const override {
+    const Final& onto = finals[static_cast<std::size_t>(&expect(scene, support) - scene.objects.data())];
+    return norm(target.centre_m - top_of(onto.object, onto.pose));
   }
   std::vector<Gap> gaps(const Scene& scene, const Final& target, const std::vector<Final>& finals,
                         const Motion&) const override {

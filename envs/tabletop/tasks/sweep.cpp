@@ -223,8 +223,14 @@ class Sweep final : public Task {
     return sweep_action(scene, poses[object], scene.objects[object]);
   }
 
-  Failure judge(const Scene&, const Final& target, const std::vector<Final>&) const override {
-    return GoalZones::contains(target.centre_m) ? failure::none : missed_zone;
+  Failure judge(const Scene& scene, const Final& target, const std::vector<Final>& finals,
+                const JudgeLimits& limits) const override {
+    const bool near = !limits.position_m || off_m(scene, target, finals) <= *limits.position_m;
+    return near && GoalZones::contains(target.centre_m) ? failure::none : missed_zone;
+  }
+
+  double off_m(const Scene&, const Final& target, const std::vector<Final>&) const override {
+    return std::abs(std::abs(target.centre_m.y) - (GoalZones::near_m + GoalZones::far_m) / 2);
   }
   std::vector<Gap> gaps(const Scene&, const Final& target, const std::vector<Final>&,
                         const Motion& motion) const override {

@@ -28,6 +28,9 @@ class InOrder final : public Environment {
   Observation look(const View& view) override { return after_reset("look()").look(view); }
   void show_shadows(bool on) override { environment_->show_shadows(on); }
   StepResult step(const Action& action) override { return after_reset("step()").step(action); }
+  Rejudged judged_again(const JudgeLimits& limits) const override {
+    return after_reset("judged_again()").judged_again(limits);
+  }
   std::vector<EngineBody> bodies() const override { return after_reset("bodies()").bodies(); }
   Observation observe() override { return after_reset("observe()").observe(); }
   Action expert_action() const override { return after_reset("expert_action()").expert_action(); }

@@ -21,7 +21,7 @@ constexpr const char* surroundings =
     "  1    worse in `compare`, different in `verify`, reversed in `report --claims`, refused by\n"
     "       `leaderboard`, a problem in `check-plugin` or `check-scenario`\n"
     "  2    an error in the command line, a file or a directory; nothing was overwritten\n"
-    "  3    a cell failed; `merge`, `status`: the run is not whole\n"
+    "  3    a cell failed; `merge`, `status`: the run is not whole; `rescore`: episodes were left out\n"
     "  4    a plugin is missing or was refused\n"
     "  5    `verify`: bytes differ and the record names another build, processor or data; outcomes\n"
     "       differ no more than chance allows\n"
@@ -55,6 +55,7 @@ void add_commands(CLI::App& app, int& exit) {
   add_new_plugin(app, exit);
   add_check_plugin(app, exit);
   add_new_scenario(app, exit);
+  add_new_suite(app, exit);
   add_drawn_commands(app, exit);
   add_study(app, exit);
   add_encoder(app, exit);
@@ -64,11 +65,11 @@ void add_commands(CLI::App& app, int& exit) {
 void arrange_commands(CLI::App& app) {
   const std::pair<const char*, std::vector<const char*>> titles[] = {
       {"To look around", {"list", "info", "select", "answers", "render", "demos", "replay"}},
-      {"To run and to compare", {"run", "open", "report", "compare", "verify", "attribute"}},
+      {"To run and to compare", {"run", "open", "report", "rescore", "compare", "verify", "attribute"}},
       {"To run on many machines", {"cluster", "status", "merge"}},
       {"To publish", {"leaderboard"}},
       {"To add a method, an engine or a scenario",
-       {"new-plugin", "check-plugin", "new-scenario", "check-scenario", "commands"}},
+       {"new-plugin", "check-plugin", "new-scenario", "new-suite", "check-scenario", "commands"}},
       {"To run a user study", {"study"}},
       {"To look after an installation", {"encoder", "cache"}}};
   for (const auto& [title, names] : titles)

@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include <lgabench/cli/verbs.hpp>
+#include <lgabench/cli/new_scenario.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
@@ -17,15 +17,7 @@
 namespace lgabench::cli {
 namespace {
 
-using Words = std::vector<std::string>;
-
-struct NewScenarioArguments {
-  std::string name, task = "pick_and_place", space = "tabletop", distractors = "1:2";
-  Words commands, unseen, types, textures{"ALL"}, other_types, other_textures{"ALL"};
-  Words also, careless, undecided, order;  // all but the last: sets
-  std::string rule, of, words;
-  std::optional<double> angle_deg;
-  bool clockwise = false, hard = false, near_miss = false;
+struct NewScenarioArguments : NewScenario {
   fs::path directory = ".";
 };
 
@@ -38,14 +30,14 @@ Words tasks() {
 }
 
 // The words that a person types for what no flag gave, with commas between them where there may be several.
-void ask(Words& words, const char* flag, const char* question, bool several) {
+void ask(const char* verb, Words& words, const char* flag, const char* question, bool several) {
   if (!words.empty()) return;
   std::string line;
   if (::isatty(STDIN_FILENO)) {
     to_stderr("{} ", question);
     std::getline(std::cin, line);
   }
-  if (line.empty()) throw InputError(fmt::format("new-scenario: expected {}", flag));
+  if (line.empty()) throw InputError(fmt::format("{}: expected {}", verb, flag));
   words = several ? CLI::detail::split(line, ',') : Words{line};
   for (std::string& word : words) CLI::detail::trim(word);
 }
@@ -76,7 +68,7 @@ Json sets_of(const Words& texts) {
   return sets;
 }
 
-Json meaning_of(const NewScenarioArguments& a) {
+Json meaning_of(const NewScenario& a) {
   const Json product = set_of(a.types, a.textures);
   if (a.also.empty() && a.rule.empty()) return product;
   Json meaning{{"sets", {product}}};
@@ -96,7 +88,7 @@ Json range_of(const std::string& text) {
   return {fewest, most};
 }
 
-Json scenario_json(const NewScenarioArguments& a) {
+Json scenario_json(const NewScenario& a) {
   Json truth{{"target", meaning_of(a)}};
   const EnvironmentType& environment = find_environment(environment_id);
   const std::optional<SecondRole>& second = find_task(environment, a.task).second;
@@ -129,10 +121,7 @@ void new_scenario(NewScenarioArguments a) {
   const fs::path file = (a.directory / (a.name + ".json")).lexically_normal();
   if (std::error_code error; fs::exists(file, error))
     throw InputError(fmt::format("{}: exists already; nothing was written", file.string()));
-  ask(a.commands, "--command TEXT", "What is the command?", false);
-  ask(a.types, "--types", "Which object types does it mean? (with commas between them, or ALL)", true);
-  const Json json = scenario_json(a);
-  read_scenario(json, file.string());  // the reader of runs judges what was given
+  const Json json = new_scenario_json(a, "new-scenario", file.string());
   write_file(file, json.dump(1) + "\n");
   const std::string path = fs::weakly_canonical(a.directory).string();
   to_stdout("{}\n\nTo sample it, let the oracle play it, and draw it:\n  lgabench check-scenario {}\n", file.string(),
@@ -148,43 +137,55 @@ void new_scenario(NewScenarioArguments a) {
 
 }  // namespace
 
+Json new_scenario_json(NewScenario& a, const char* verb, const std::string& file) {
+  ask(verb, a.commands, "--command TEXT", "What is the command?", false);
+  ask(verb, a.types, "--types", "Which object types does it mean? (with commas between them, or ALL)", true);
+  const Json json = scenario_json(a);
+  read_scenario(json, file);  // the reader of runs judges what was given
+  return json;
+}
+
+void add_scenario_options(Verb& verb, NewScenario& a) {
+  verb.below("The command");
+  verb.option("--command TEXT", a.commands, "The command's words; asked for if left out; can be repeated", repeatable);
+  verb.option("--unseen TEXT", a.unseen, "A command that is tested but never demonstrated; can be repeated",
+              repeatable);
+  verb.option("--types TYPE,...", a.types,
+              "Object types that the command means, ALL, or \"ALL but TYPE,...\"; asked for if left out", repeatable);
+  verb.option("--textures TEXTURE,...", a.textures, "Their textures, ALL, or \"ALL but TEXTURE,...\"", repeatable);
+  verb.option("--also SET", a.also,
+              "What it means besides: TYPE,.../TEXTURE,..., or TYPE,... of any texture; can be repeated", repeatable);
+  verb.option("--which RULE", a.rule, "Of several that it means, the one that this rule tells");
+  verb.option("--of SET", a.of, "left_of, right_of, nearest_to, farthest_from: of what, TYPE,.../TEXTURE,...");
+  verb.option("--order NAME,...", a.order, "first_in: object types or textures, the first of which is the one",
+              repeatable);
+  verb.option("--words SET", a.words, "What the words alone would mean, where the person takes less of it");
+  verb.option("--other-types TYPE,...", a.other_types, "Object types of what a sweep must not touch", repeatable);
+  verb.option("--other-textures TEXTURE,...", a.other_textures, "Their textures, or ALL", repeatable);
+  verb.option("--space SPACE", a.space,
+              "The feature space, whose words you may use (lgabench render --gallery objects draws them)",
+              one_of("space", {"tabletop", "household"}), with_default);
+  verb.below("The task and its scenes");
+  verb.option("--task TASK", a.task, "What to do with the object", one_of("task", tasks()), with_default);
+  verb.option("--angle DEGREES", a.angle_deg, "rotate: by how much, in degrees");
+  verb.option("--clockwise", a.clockwise, "rotate: clockwise, seen from above");
+  verb.option("--distractors N:M", a.distractors, "Number of other objects in a test scene", with_default);
+  verb.option("--hard", a.hard, "Add an arm where a distractor shares the target's type or texture");
+  verb.option("--near-miss", a.near_miss,
+              "Add an arm of near misses: all other objects share the target's type or texture, and each other's");
+  verb.option("--careless SET", a.careless,
+              "What a careless reading would keep, TYPE,.../TEXTURE,...: one is in every test scene; can be repeated",
+              repeatable);
+  verb.option("--undecided SET", a.undecided,
+              "What people would not agree on, TYPE,.../TEXTURE,...: never drawn; can be repeated", repeatable);
+}
+
 void add_new_scenario(CLI::App& app, int& exit) {
   auto a = std::make_shared<NewScenarioArguments>();
   Verb verb(app, "new-scenario", "Write a tabletop scenario of your own: a command, what it means, its scenes");
   verb.option("name NAME", a->name, "The scenario's id, and the name of its file", required);
   verb.option("--directory DIR", a->directory, "The directory for the file", with_default);
-  verb.below("The command");
-  verb.option("--command TEXT", a->commands, "The command's words; asked for if left out; can be repeated", repeatable);
-  verb.option("--unseen TEXT", a->unseen, "A command that is tested but never demonstrated; can be repeated",
-              repeatable);
-  verb.option("--types TYPE,...", a->types,
-              "Object types that the command means, ALL, or \"ALL but TYPE,...\"; asked for if left out", repeatable);
-  verb.option("--textures TEXTURE,...", a->textures, "Their textures, ALL, or \"ALL but TEXTURE,...\"", repeatable);
-  verb.option("--also SET", a->also,
-              "What it means besides: TYPE,.../TEXTURE,..., or TYPE,... of any texture; can be repeated", repeatable);
-  verb.option("--which RULE", a->rule, "Of several that it means, the one that this rule tells");
-  verb.option("--of SET", a->of, "left_of, right_of, nearest_to, farthest_from: of what, TYPE,.../TEXTURE,...");
-  verb.option("--order NAME,...", a->order, "first_in: object types or textures, the first of which is the one",
-              repeatable);
-  verb.option("--words SET", a->words, "What the words alone would mean, where the person takes less of it");
-  verb.option("--other-types TYPE,...", a->other_types, "Object types of what a sweep must not touch", repeatable);
-  verb.option("--other-textures TEXTURE,...", a->other_textures, "Their textures, or ALL", repeatable);
-  verb.option("--space SPACE", a->space,
-              "The feature space, whose words you may use (lgabench render --gallery objects draws them)",
-              one_of("space", {"tabletop", "household"}), with_default);
-  verb.below("The task and its scenes");
-  verb.option("--task TASK", a->task, "What to do with the object", one_of("task", tasks()), with_default);
-  verb.option("--angle DEGREES", a->angle_deg, "rotate: by how much, in degrees");
-  verb.option("--clockwise", a->clockwise, "rotate: clockwise, seen from above");
-  verb.option("--distractors N:M", a->distractors, "Number of other objects in a test scene", with_default);
-  verb.option("--hard", a->hard, "Add an arm where a distractor shares the target's type or texture");
-  verb.option("--near-miss", a->near_miss,
-              "Add an arm of near misses: all other objects share the target's type or texture, and each other's");
-  verb.option("--careless SET", a->careless,
-              "What a careless reading would keep, TYPE,.../TEXTURE,...: one is in every test scene; can be repeated",
-              repeatable);
-  verb.option("--undecided SET", a->undecided,
-              "What people would not agree on, TYPE,.../TEXTURE,...: never drawn; can be repeated", repeatable);
+  add_scenario_options(verb, *a);
   verb->footer(
       "docs/own-scenarios.md says more; docs/formats has every member of the file.\n"
       "Example: lgabench new-scenario round --command \"Bring me something round.\" --types round,ring");

@@ -12,6 +12,9 @@ int main(int argc, char** argv) {
   cli::add_select(app, exit);
   cli::add_demos(app, exit);
   cli::add_render(app, exit);
+  cli::add_replay(app, exit);
+  cli::add_rescore(app, exit);
+  cli::add_check_scenario(app, exit);
   cli::arrange_commands(app);
   const std::string what = argc == 2 ? argv[1] : "";
   if (what != "man" && what != "bash" && what != "zsh" && what != "fish") return cli::usage;

@@ -1,5 +1,7 @@
 #include <lgabench/cli/played_scenes.hpp>
 
+#include <fmt/format.h>
+
 #include <iostream>
 #include <iterator>
 #include <set>
@@ -10,11 +12,15 @@
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/json.hpp>
+#include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/shown.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench::cli {
+
+PlayedScenes::PlayedScenes(const std::vector<std::filesystem::path>& more)
+    : catalogue_(scan_plugins(plugin_directories(more))) {}
 
 const PlayedScenes::Played& PlayedScenes::cell(const std::string& file) {
   const auto known = cells_.find(file);
@@ -32,12 +38,13 @@ Scene PlayedScenes::scene(const Played& played, const std::string& arm, int inde
 }
 
 Environment* PlayedScenes::on(const std::string& engine, const Scenario& scenario) {
-  std::unique_ptr<Environment>& made = environments_[{
-      engine, scenario.environment, scenario.space.id + find_environment(scenario.environment).world_of(scenario)}];
+  std::string world = scenario.space.id + find_environment(scenario.environment).world_of(scenario);
+  for (const BodyVariant& body : body_variants(scenario))  // all of which one world holds, as it did in the cell
+    world += fmt::format(" {},{},{}", body.scale, body.friction, body.mass);
+  std::unique_ptr<Environment>& made = environments_[{engine, scenario.environment, std::move(world)}];
   if (made) return made.get();
-  static const Catalogue catalogue = scan_plugins(plugin_directories());
   try {
-    made = make_environment(scenario, load_engine(catalogue.find("engine", engine)));
+    made = make_environment(scenario, load_engine(catalogue_.find("engine", engine)));
   } catch (const PluginError&) {
     return nullptr;
   }

@@ -1,13 +1,16 @@
 // Scenes that a run has played, made again by name, and the engines to play them on.
 #pragma once
 #include <array>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/plugin/loader.hpp>
 #include <lgabench/record/cell.hpp>
 
 namespace lgabench::cli {
@@ -15,6 +18,9 @@ namespace lgabench::cli {
 /// Reads each cell, and loads each engine, once. One thread.
 class PlayedScenes {
  public:
+  /// Engines are also looked for in `more`.
+  explicit PlayedScenes(const std::vector<std::filesystem::path>& more = {});
+
   struct Played {
     Cell cell;
     Scenario scenario;
@@ -30,8 +36,9 @@ class PlayedScenes {
   Environment* on(const std::string& engine, const Scenario& scenario);
 
  private:
+  const Catalogue catalogue_;
   std::map<std::array<std::string, 3>, std::unique_ptr<Environment>>
-      environments_;                                      // by engine, environment, space and world
+      environments_;                                      // by engine, environment, and space with world
   std::map<std::string, std::unique_ptr<Played>> cells_;  // by file
 };
 

@@ -49,6 +49,7 @@ void add_check_plugin(CLI::App& app, int& exit);
 void add_cache(CLI::App& app, int& exit);
 void add_encoder(CLI::App& app, int& exit);
 void add_new_scenario(CLI::App& app, int& exit);
+void add_new_suite(CLI::App& app, int& exit);
 void add_drawn_commands(CLI::App& app, int& exit);
 void add_study(CLI::App& app, int& exit);
 void add_answers(CLI::App& app, int& exit);
@@ -64,6 +65,7 @@ void add_pictures(CLI::App& app, int& exit);
 void add_strips(CLI::App& app, int& exit);
 void add_oracle(CLI::App& app, int& exit);
 void add_replay(CLI::App& app, int& exit);
+void add_rescore(CLI::App& app, int& exit);
 void add_act(CLI::App& app, int& exit);
 void add_check_scenario(CLI::App& app, int& exit);
 

@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
   cli::add_oracle(app, exit);
   cli::add_check_scenario(app, exit);
   cli::add_replay(app, exit);
+  cli::add_rescore(app, exit);
   cli::add_act(app, exit);
   return cli::dispatch(app, argc, argv, exit);
 }

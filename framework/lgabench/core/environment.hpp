@@ -1,6 +1,7 @@
 // The environment interface, in Gymnasium's words.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,18 @@ struct StepResult {
   Failure failure = failure::none;  // none exactly if is_success
   std::uint8_t taken = 0;           // the instance that was moved on purpose; 0: none, or it is not told
   std::vector<Gap> gaps;            // the same parts in every scene of a task, all 0 if is_success; none: not told
+};
+
+/// Limits of success in place of the protocol's; what is not given is the protocol's. Of a task that is judged by an
+/// area the target's centre must be in it and as near to its middle as `position_m`.
+struct JudgeLimits {
+  std::optional<double> position_m{}, angle_deg{};
+};
+
+/// What an action led to, under such limits. The narrower they are, the fewer successes there are.
+struct Rejudged {
+  Failure failure = failure::none;
+  std::optional<double> distance_m{};  // seen from above: from where the task asks for it, of the nearest target
 };
 
 /// A scene's object as the engine has it.
@@ -87,6 +100,12 @@ class Environment {
 
   /// The oracle's rule applied to another object: what it would do were `instance_id` the target.
   virtual Action expert_action_for(std::uint8_t instance_id) const = 0;
+
+  /// What the last step() led to, judged once more; with no limits given, failure is that step's. @throws InputError
+  /// where an environment has no limits to change.
+  virtual Rejudged judged_again(const JudgeLimits& /*limits*/) const {
+    throw InputError("environment: it is judged by the protocol's limits alone");
+  }
 };
 
 }  // namespace lgabench

@@ -51,16 +51,25 @@ std::map<SceneOn, std::vector<Action>> oracle_actions(const RunResults& run) {
 std::pair<const EnvironmentType*, const TaskInfo*> played_in(const RunResults& run, const CellResult& cell) {
   const fs::path file = run.directory / "cells" / cell.key / cell_file::configuration;
   const Json json = read_json(file);
-  const EnvironmentType& environment = find_environment(cell.environment);
-  const TaskInfo& task = find_task(environment, JsonReader(json, file.string()).at("scenario").at("task").string());
-  const Action any(environment.action_space().size(), 1);
-  if (!environment.distance(task, any, any))
-    throw InputError(
-        fmt::format("--judge pose: {}: {} does not compare actions by pose", cell.scenario, cell.environment));
-  return {&environment, &task};
+  const std::string task = JsonReader(json, file.string()).at("scenario").at("task").string();
+  return {&find_environment(cell.environment), &task_judged_by_pose(cell.environment, task)};
 }
 
 }  // namespace
+
+bool is_within(const ActionDistance& distance, const PoseTolerance& tolerance) {
+  return distance.begin_m <= tolerance.begin_m && distance.end_m <= tolerance.end_m &&
+         distance.turn_rad <= tolerance.turn_deg * pi / 180;
+}
+
+const TaskInfo& task_judged_by_pose(const std::string& environment, const std::string& task) {
+  const EnvironmentType& type = find_environment(environment);
+  const TaskInfo& of = find_task(type, task);
+  const Action any(type.action_space().size(), 1);
+  if (!type.distance(of, any, any))
+    throw InputError(fmt::format("--judge pose: {} does not compare actions by pose", environment));
+  return of;
+}
 
 void judge_by_pose(RunResults& run, const PoseTolerance& tolerance) {
   std::map<std::string, std::pair<const EnvironmentType*, const TaskInfo*>> played;  // by scenario
@@ -74,9 +83,7 @@ void judge_by_pose(RunResults& run, const PoseTolerance& tolerance) {
         const auto& in = played.at(cell.scenario);  // a name for each of the pair could not be captured in C++17
         const auto& right = oracle.at({cell.engine, episode.scene});
         const bool near = std::any_of(right.begin(), right.end(), [&](const Action& action) {
-          const auto distance = in.first->distance(*in.second, episode.action, action);
-          return distance->begin_m <= tolerance.begin_m && distance->end_m <= tolerance.end_m &&
-                 distance->turn_rad <= tolerance.turn_deg * pi / 180;
+          return is_within(*in.first->distance(*in.second, episode.action, action), tolerance);
         });
         if (near)
           episode.failure = failure::none;

@@ -1,5 +1,6 @@
 // Success by pose: whether an action is the oracle's but for a tolerance, whatever physics made of it.
 #pragma once
+#include <lgabench/core/environments.hpp>
 #include <lgabench/report/results.hpp>
 
 namespace lgabench::report {
@@ -10,6 +11,11 @@ struct PoseTolerance {
   double begin_m = .07, end_m = .10;  // grasp and place; a sweep's beginning and end
   double turn_deg = 15;               // where the task asks for a turn
 };
+
+bool is_within(const ActionDistance& distance, const PoseTolerance& tolerance);
+
+/// The environment's task. @throws InputError where the environment does not compare actions by pose (mobile).
+const TaskInfo& task_judged_by_pose(const std::string& environment, const std::string& task);
 
 /// Judges every episode of the run by pose: a success where its action is within the tolerance of the oracle's for any
 /// object that the scene counts as right. An episode without an action stays a failure. Attributions and what was told
