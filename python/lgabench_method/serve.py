@@ -286,10 +286,10 @@ class PerturbationHost:
         seen = self.observation.read(header["instances"])
         if "space" in header:
             space = FeatureSpace(**header["space"])
-            perceived = self.perturbation.read(seen, space)
+            call, perceived = "read", self.perturbation.read(seen, space)
         else:
-            perceived = self.perturbation.perceive(seen, header["level"], RandomStream(header["stream"]))
-        for frame in values.perceived_frames(perceived, self.observation.shape):
+            call, perceived = "perceive", self.perturbation.perceive(seen, header["level"], RandomStream(header["stream"]))
+        for frame in values.perceived_frames(perceived, self.observation.shape, call):
             self.channel.send(*frame)
 
     def drop(self, header):

@@ -157,18 +157,18 @@ class ObservationMemory:
                            None if bits is None else bits.reshape(rows, columns).copy())
 
 
-def perceived_frames(value, shape):
-    """(header, payload) of the frames that say what a perturbation made of an observation of this shape: "ids" and "perceived"."""
+def perceived_frames(value, shape, call):
+    """(header, payload) of the frames that say what `call` made of an observation of this shape: "ids" and "perceived"."""
     if not isinstance(value, Observation):
-        raise TypeError(f"perceive() returned {type(value).__name__}, expected a lgabench_method.Observation")
+        raise TypeError(f"{call}() returned {type(value).__name__}, expected a lgabench_method.Observation")
     for name, array, expected in (("rgb", value.rgb, shape), ("ids", value.ids, shape[:2])):
         if not isinstance(array, numpy.ndarray) or array.dtype != numpy.uint8 or array.shape != expected:
             got = f"{array.dtype} of shape {array.shape}" if isinstance(array, numpy.ndarray) else type(array).__name__
-            raise ValueError(f"perceive() returned {name} as {got}, expected uint8 of shape {expected}")
+            raise ValueError(f"{call}() returned {name} as {got}, expected uint8 of shape {expected}")
     instances = []
     for one in value.instances:
         if not 0 < int(one.id) < 256:
-            raise ValueError(f"perceive() returned an instance of id {one.id}, expected 1 to 255")
+            raise ValueError(f"{call}() returned an instance of id {one.id}, expected 1 to 255")
         instances.append({"id": int(one.id), "object_type": str(one.object_type), "texture": str(one.texture)})
     return (({"type": "ids"}, value.ids.tobytes()),
             ({"type": "perceived", "instances": instances}, value.rgb.tobytes()))

@@ -95,6 +95,13 @@ class Perceivers(case.Case):
         self.run_names("my_eyes", "--no-reference", plugin="eyes/my_eyes.py:MyEyes")
         self.assertEqual({status["state"] for _, status in self.cells("run").values()}, {"ok"})
 
+    @unittest.skipUnless(HAS_NUMPY, f"{PYTHON} has no NumPy")
+    def test_a_wrong_reply_in_python_names_its_function(self):
+        (self.dir / "reader.py").write_text(IN_PYTHON.replace("return seen", "return seen.instances"))
+        self.run_names("fixture_reader", "--no-reference", plugin="reader.py:Reader", expect=3)
+        (_, status), = self.cells("run").values()
+        self.assertIn("read() returned list, expected a lgabench_method.Observation", status["reason"])
+
     def test_what_fails_costs_its_own_cell(self):
         for way, reason in (("throws", "fixture_reader (perceiver): its own failure"), ("crashes", "signal 11 (Segmentation fault)"),
                             ("wrong size", "read() returned 3 bytes of rgb and 32768 of ids, expected 98304 and 32768"),
