@@ -106,6 +106,11 @@ class Published(Case):
             with self.subTest(page.name):
                 self.assertEqual(ids_of_file(page.read_text()), [])
 
+    def test_tables_of_a_page_have_titles_of_their_own(self):
+        for page in sorted(BOARD.glob("*.html")):
+            titles = re.findall(r'<h2 id="table\d+-title">([^<]*)<', page.read_text())
+            self.assertEqual(len(titles), len(set(titles)), page.name)
+
     def test_what_build_does_for_a_new_entry_is_what_its_page_shows(self):
         """docs/entering-the-leaderboard.md, step 4, with the entry of steps 1 to 3 as it was played once."""
         step = (SOURCE / "docs/entering-the-leaderboard.md").read_text().split("## 4. Add it")[1].split("\n## ")[0]

@@ -302,6 +302,17 @@ std::string title_of(const NamedTable& table) {
   return fmt::format("{}, {}", Titles(table.setting.suite).suite(), to_string(table.ranking));
 }
 
+// What a page calls it: its ranking, and its preset where another table of the page has that ranking too.
+std::string section_title(const NamedTable& table, const std::vector<NamedTable>& tables) {
+  const std::string ranking = capital(to_string(table.ranking));
+  const auto alike = std::count_if(tables.begin(), tables.end(),
+                                   [&table](const NamedTable& one) { return one.ranking == table.ranking; });
+  if (alike < 2) return ranking;
+  std::string preset = table.setting.preset;
+  std::replace(preset.begin(), preset.end(), '_', ' ');
+  return fmt::format("{}, {}", ranking, preset);
+}
+
 std::string what_was_played(const Setting& setting) {
   const auto presets = report::about_suite(setting.suite).presets;
   const auto own = presets.find(setting.preset);
@@ -325,7 +336,7 @@ report::Document suite_document(const std::string& suite, const std::vector<Name
   std::size_t first_row = 0, number = 0;
   for (const NamedTable& table : tables) {
     const std::string id = fmt::format("table{}", ++number);
-    Section section{id, capital(to_string(table.ranking))};
+    Section section{id, section_title(table, tables)};
     section.add<Paragraph>(reading, {{what_was_played(table.setting) + " " + words_of(table.ranking, &table.track)}});
     if (!axes_of(table.setting).empty())
       section.add<Paragraph>(
