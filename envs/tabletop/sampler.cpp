@@ -244,15 +244,17 @@ struct Draws {
 };
 
 std::vector<SceneObject> sample_objects(const Request& request, const Streams& stream, Draws& draws) {
-  const auto& [scenario, task, layout, content, training, meant, members] = request;
+  const auto& [scenario, task, layout, content, training, meant, of_members] = request;
   const auto second = task.second();
   const bool by_choice = !content.choice.empty();
   if (by_choice && !second) return sample_choice(request, stream("choice"));
 
-  const auto draw_target = [&] {
+  const auto draw_target = [&request, &draws] {  // a lambda may not capture the names above (C++17)
+    const std::vector<Features>& members = request.members;
     return members.empty()
-               ? sample_features(scenario, layout, content.target.value_or(meant.target.product()),
-                                 std::min(request.widest_m(), layout.widest_target_m), "a target", draws.targets)
+               ? sample_features(
+                     request.scenario, request.layout, request.content.target.value_or(request.meant.target.product()),
+                     std::min(request.widest_m(), request.layout.widest_target_m), "a target", draws.targets)
                : members[draws.targets.below(static_cast<std::uint32_t>(members.size()))];
   };
   Features target = draw_target();
@@ -318,7 +320,7 @@ std::vector<Features> members_to_show(const Scenario& scenario, const SceneReque
 // Where a crowd finds no room, the next draw of its objects.
 std::vector<SceneObject> placed_objects(const Request& request, const Streams& stream) {
   constexpr int draws = 20;
-  const auto& [scenario, task, layout, content, training, meant, members] = request;
+  const auto& [scenario, task, layout, content, training, meant, of_members] = request;
   Draws random{stream("target"), stream("distractors")};
   for (int draw = 1;; ++draw) {
     std::vector<SceneObject> objects = sample_objects(request, stream, random);

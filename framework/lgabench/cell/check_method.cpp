@@ -94,10 +94,6 @@ struct Sight {
   Observation observation;
 };
 
-std::string first_layout(const Scenario& scenario) {
-  return find_task(find_environment(scenario.environment), scenario.task).layouts.front();
-}
-
 // A scenario, and the scenes that the method acts in.
 struct Bench {
   Scenario scenario;
@@ -105,7 +101,7 @@ struct Bench {
   std::unique_ptr<Environment> environment;
   std::vector<Sight> sights;
 
-  Bench(Scenario played, const PluginInfo& engine) : scenario(std::move(played)), layout(first_layout(scenario)) {
+  Bench(Scenario played, const PluginInfo& engine) : scenario(std::move(played)), layout(layouts_of(scenario).front()) {
     environment = make_environment(scenario, load_engine(engine));
     for (const Arm& arm : scenario.tests)
       for (int i = 0; i < scenes_an_arm; ++i) {
@@ -129,7 +125,7 @@ struct Answering {
       : recorded(scenario, recorded_source(scenario, "recorded", job.plugin.asks == "edit")),
         truthful(scenario.commands),
         model(knows_all(scenario) ? static_cast<LanguageModel&>(recorded) : truthful, always_no),
-        human(people_of(scenario, first_layout(scenario), seed, demonstrations, job.options), job.plugin.asks),
+        human(people_of(scenario, layouts_of(scenario).front(), seed, demonstrations, job.options), job.plugin.asks),
         services{model,
                  human,
                  job.options,

@@ -118,7 +118,7 @@ class GivenReplies : public ChatClient {
       ChatReply reply{reader.at("reply").string()};
       if (reader.has("tokens")) reply.tokens = reader.at("tokens").integer(0, 1LL << 40);
       if (reader.has("seconds")) reply.seconds = reader.at("seconds").number();
-      keep(reader, id, std::move(reply));
+      keep(reader, id, reply);
     }
     if (asked_.empty()) throw InputError(fmt::format("{}: expected a line for each question", file.string()));
   }
@@ -136,7 +136,7 @@ class GivenReplies : public ChatClient {
   const std::set<std::pair<std::string, std::string>>& asked() const { return asked_; }
 
  private:
-  void keep(const JsonReader& line, const std::string& id, ChatReply reply) {
+  void keep(const JsonReader& line, const std::string& id, const ChatReply& reply) {
     const auto [there, is_new] = replies_.insert({id, reply});
     if (!is_new && there->second.text != reply.text) line.fail("one reply to each question");
   }

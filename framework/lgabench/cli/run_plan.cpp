@@ -289,11 +289,8 @@ void add_run_options(Verb& verb, RunArguments& a) {
       "use only METHOD's Selections, while the shipped lga+policy=heat_map learns and acts");
   verb.option("--engines ENGINE,...", a.engines, "Engines, by plugin id");
   verb.option("--scenarios SCENARIO,...", a.scenarios, "Scenarios");
-  verb.option("--axes AXIS,...", a.axes,
-              "Of the perturbations only these axes, with the control; AXIS:LEVEL+LEVEL for some levels. Outcomes are "
-              "those of the whole suite");
-  verb.option("--arms ARM,...", a.arms,
-              "Of the arms only these, with each scenario's first one: `lgabench list arms --of SUITE`");
+  verb.option("--axes AXIS,...", a.axes, "Only these axes, beside the control; AXIS:LEVEL+LEVEL: some levels");
+  verb.option("--arms ARM,...", a.arms, "Only these arms (lgabench list arms), and each scenario's first");
   verb.option("--layout LAYOUT,...", a.layouts,
               "How objects are placed: `lgabench list layouts --of SUITE`; separate several with commas", rare);
   verb.option("--demos N,...", a.demonstrations, "Numbers of demonstrations per seen command, such as 10,20");
@@ -378,8 +375,7 @@ void add_run_options(Verb& verb, RunArguments& a) {
       "Compute one cell in the foreground and unconfined: a plugin under gdb, Python with breakpoint() working; "
       "results are not kept. KEY: the first digits of the cell's key (--debug list prints all keys)",
       rare);
-  verb.option("--dry-run", a.dry_run,
-              "Compute nothing; print the number of cells, and the time and disk space that they would take");
+  verb.option("--dry-run", a.dry_run, "Compute nothing; print how many cells, hours and bytes it would be");
   verb.below("Output");
   verb.option("--out DIR", a.out, "Run directory (default: runs/SUITE-PRESET-HASH, with -IofN appended for a shard)");
   verb.option("--cache DIR", a.cache,
