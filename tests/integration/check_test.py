@@ -27,6 +27,22 @@ class Undeclared(Selects):
 
     def select(self, command, space, services):
         return services.options["hiden"]
+
+
+class Asks(Selects):
+    asks = "accept"
+    options = {"questions": {"default": 5, "min": 0, "help": "to each person", "source": "test"}}
+
+    def revise(self, command, selected, demonstrations, services):
+        things = [one["id"] for one in services.human.scene(command, 0) if one["object_type"] != "pallet"]
+        services.human.takes(command, 0, things[0])
+        services.human.which(command, 1)
+        services.human.accepts(command, "heart", "red")
+        return selected
+
+    def learn(self, demonstrations, services):
+        action = demonstrations[0].steps[0].label
+        return type("Still", (), {"act": lambda self, observation, instruction: action})()
 """
 
 
@@ -76,6 +92,12 @@ class CheckPlugin(Case):
         report = json.loads(self.call("check-plugin", "m.py:Selects", "--json", "--python", PYTHON).stdout)
         found = {finding["check"]: finding["detail"] for finding in report["findings"]}
         self.assertEqual(found["learn"], "none: it selects alone, as --methods selected_by:m asks it to")
+
+    def test_people_are_asked_in_scenes_as_often_as_the_option_says(self):
+        (self.dir / "mine.py").write_text(SELECTS)
+        self.assertEqual(self.check("mine.py:Asks", expect=0), {})
+        problems = self.check("mine.py:Asks", "questions=4")
+        self.assertIn("expected at most 4 questions to a person", json.dumps(problems))
 
     def test_tells_what_it_found_before_it_ends_and_where_it_stays(self):
         process = subprocess.Popen(command_line("check-plugin", FAULTY, "--set", "where=act", "--set", "how=sleep", "--timeout", "23"),
@@ -143,8 +165,7 @@ class CheckPlugin(Case):
         self.assertIn("no environment", self.call("check-plugin", engine, "--environment", "moon", expect=2).stderr)
 
     def test_shipped_plugins_are_good(self):
-        for name, setting in {"mujoco": (), "lga": ("epochs=5",), "gcbc_dart": ("epochs=2",),
-                              "person_rule": ("questions=2", "policy=point")}.items():
+        for name, setting in {"mujoco": (), "lga": ("epochs=5",), "gcbc_dart": ("epochs=2",), "plga_active": ("epochs=2",)}.items():
             with self.subTest(name):
                 self.assertEqual(self.check(BUILD / f"lib/lgabench/plugins/{name}.so", *setting, expect=0), {})
 

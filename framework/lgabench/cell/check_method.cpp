@@ -122,10 +122,11 @@ struct Bench {
 // Whom the method may ask, as in a cell without people and with recorded answers, where there are any.
 struct Answering {
   Answering(const Scenario& scenario, const HostJob& job, bool always_no = false)
-      : recorded(scenario, recorded_source(scenario, "recorded", job.plugin.asks == "edit")),
+      : asked(in_scenes(scenario, job.options.contains("questions"))),
+        recorded(scenario, recorded_source(scenario, "recorded", job.plugin.asks == "edit")),
         truthful(scenario.commands),
         model(knows_all(scenario) ? static_cast<LanguageModel&>(recorded) : truthful, always_no),
-        human(people_of(scenario, layouts_of(scenario).front(), seed, demonstrations, job.options), job.plugin.asks),
+        human(people_of(asked, layouts_of(scenario).front(), seed, demonstrations, job.options), job.plugin.asks),
         services{model,
                  human,
                  job.options,
@@ -134,6 +135,7 @@ struct Answering {
                  actions_of(scenario),
                  declared_truth(scenario.commands, job.plugin.asks)} {}
 
+  Scenario asked;  // its people
   RecordedLanguageModel recorded;
   TruthfulModel truthful;
   CountingModel model;
@@ -142,6 +144,11 @@ struct Answering {
   Services services;
 
  private:
+  // A method with a number of questions finds people who answer in scenes, whatever the scenario.
+  static Scenario in_scenes(Scenario scenario, bool asks) {
+    if (asks && !scenario.questions) scenario.questions = Scenario::Questions{4, 0};
+    return scenario;
+  }
   bool knows_all(const Scenario& scenario) const {
     for (std::size_t c = 0; c < scenario.commands.size(); ++c)
       if (!recorded.knows(scenario.command(static_cast<int>(c)))) return false;
@@ -487,36 +494,27 @@ class MethodCheck {
   HostedMethod method_;
 };
 
-// The first scenario like that; none where the environment ("": any) has none.
-std::optional<Scenario> first_scenario(const std::string& environment, bool (*is_like_that)(const Scenario&)) {
+// The first scenario that tests commands which were not demonstrated; none where the environment ("": any) has none.
+std::optional<Scenario> with_unseen_commands(const std::string& environment) {
   for (const std::string& id : scenario_ids()) {
     Scenario scenario = load_scenario(id);
-    if ((environment.empty() || scenario.environment == environment) && is_like_that(scenario)) return scenario;
+    if (!environment.empty() && scenario.environment != environment) continue;
+    for (const ScenarioCommand& command : scenario.commands)
+      if (!command.seen) return scenario;
   }
   return std::nullopt;
 }
-
-// That tests commands which were not demonstrated.
-bool has_unseen_commands(const Scenario& scenario) {
-  return std::any_of(scenario.commands.begin(), scenario.commands.end(),
-                     [](const ScenarioCommand& command) { return !command.seen; });
-}
-
-// Whose people may be asked in scenes.
-bool has_questions(const Scenario& scenario) { return scenario.questions.has_value(); }
 
 }  // namespace
 
 CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase& phase) {
   job.seed = seed;
   job.hidden = runs_below(job.plugin.file.parent_path());
-  std::optional<Scenario> unseen = first_scenario(job.environment, has_unseen_commands);
+  std::optional<Scenario> unseen = with_unseen_commands(job.environment);
   if (job.environment.empty()) job.environment = unseen ? unseen->environment : environment_ids().front();
   std::vector<std::unique_ptr<Bench>> benches;
   const std::string& example = find_environment(job.environment).tasks().front().example;
-  std::optional<Scenario> asking;
-  if (job.plugin.asks == "accept") asking = first_scenario(job.environment, has_questions);
-  benches.push_back(std::make_unique<Bench>(asking ? *std::move(asking) : load_scenario(example), engine));
+  benches.push_back(std::make_unique<Bench>(load_scenario(example), engine));
   if (unseen) benches.push_back(std::make_unique<Bench>(*std::move(unseen), engine));
   phase("load", {});
   std::optional<Kept> kept;
