@@ -204,8 +204,8 @@ class Mobile final : public Environment {
     double least = std::hypot(size.rows, size.columns);
     for (std::size_t i = 0; i < ids.size(); ++i)
       if (is_target[ids[i]]) {
-        const int at = static_cast<int>(i);
-        least = std::min(least, std::hypot(at / size.columns - row, at % size.columns - column));
+        const int at = static_cast<int>(i), down = at / size.columns, right = at % size.columns;
+        least = std::min(least, std::hypot(down - row, right - column));
       }
     return least;
   }
