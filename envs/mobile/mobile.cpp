@@ -197,7 +197,7 @@ class Mobile final : public Environment {
   // does.
   double aim_px(const Plan& plan, const std::vector<std::uint8_t>& ids) const {
     const PictureSize size = front_camera().size;
-    std::vector<bool> is_target(256);
+    std::array<bool, 256> is_target{};
     for (const SceneObject& o : scene_.objects) is_target[o.instance_id] = o.role == role::target;
     const double row = std::min(std::floor(plan.v * size.rows), size.rows - 1.);
     const double column = std::min(std::floor(plan.u * size.columns), size.columns - 1.);

@@ -127,16 +127,9 @@ constexpr std::array kinds{"methods", "rows",    "engines", "perturbations", "en
                            "layouts", "presets", "sources", "axes",          "arms",         "kinds"};
 
 std::vector<std::string> layouts_of_all(const Suite& suite) {
-  std::vector<std::string> common = layouts_of(load_scenario(suite.design.scenarios.front()));
-  for (const std::string& id : suite.design.scenarios) {
-    const std::vector<std::string> there = layouts_of(load_scenario(id));
-    common.erase(std::remove_if(common.begin(), common.end(),
-                                [&there](const std::string& layout) {
-                                  return std::find(there.begin(), there.end(), layout) == there.end();
-                                }),
-                 common.end());
-  }
-  return common;
+  std::vector<Scenario> scenarios;
+  for (const std::string& id : suite.design.scenarios) scenarios.push_back(load_scenario(id));
+  return common_layouts(scenarios);
 }
 
 bool answers(const std::string& source, const std::string& scenario) {
@@ -197,6 +190,19 @@ Json reference_rows() {
   for (const ReferenceRow& row : lgabench::reference_rows())
     all.push_back({{"id", row.id}, {"summary", row.summary + (row.in_every_suite ? "" : " (suites that ask for it)")}});
   return all;
+}
+
+std::vector<std::string> common_layouts(const std::vector<Scenario>& scenarios) {
+  std::vector<std::string> common = layouts_of(scenarios.front());
+  for (const Scenario& one : scenarios) {
+    const std::vector<std::string> there = layouts_of(one);
+    common.erase(std::remove_if(common.begin(), common.end(),
+                                [&there](const std::string& layout) {
+                                  return std::find(there.begin(), there.end(), layout) == there.end();
+                                }),
+                 common.end());
+  }
+  return common;
 }
 
 void add_list(CLI::App& app, int& exit) {

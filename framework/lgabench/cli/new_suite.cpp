@@ -49,16 +49,9 @@ bool has_answers(const std::vector<std::string>& scenarios) {
   }
 }
 
-// The layouts that all have; the continuous one where it is among them.
+// One that all have: the continuous one where it is among them.
 std::string layout_of(const std::vector<Scenario>& scenarios) {
-  std::vector<std::string> common = layouts_of(scenarios.front());
-  for (const Scenario& one : scenarios) {
-    const std::vector<std::string> there = layouts_of(one);
-    common.erase(
-        std::remove_if(common.begin(), common.end(),
-                       [&](const auto& id) { return std::find(there.begin(), there.end(), id) == there.end(); }),
-        common.end());
-  }
+  const std::vector<std::string> common = common_layouts(scenarios);
   if (common.empty()) throw InputError("--scenarios: expected scenarios that have a layout in common");
   return std::find(common.begin(), common.end(), "continuous") == common.end() ? common.front() : "continuous";
 }
@@ -69,9 +62,9 @@ Json suite_json(const NewSuiteArguments& a, const std::vector<Scenario>& scenari
     ids.push_back(one.id);
     for (const Arm& arm : one.tests) {
       arms[arm.id] = arm_words(arm.id);
-      titles[arm.id] = arm.id;
-      std::replace(titles[arm.id].get_ref<std::string&>().begin(), titles[arm.id].get_ref<std::string&>().end(), '_',
-                   ' ');
+      std::string title = arm.id;
+      std::replace(title.begin(), title.end(), '_', ' ');
+      titles[arm.id] = std::move(title);
     }
   }
   Json methods{truth, no_abstraction};

@@ -136,9 +136,10 @@ void print_coverage(const std::vector<Covered>& all, const Groups& groups, bool 
   std::vector<std::string> lacking;
   for (const Covered& one : all)
     if (!one.holds_truth) lacking.push_back(one.name);
-  to_stdout("hypotheses on what the words leave unsaid hold the truth for {} of {} commands{}{}\n",
-            all.size() - lacking.size(), all.size(), lacking.empty() || lacking.size() > most_names ? "" : ", not for ",
-            lacking.size() > most_names ? std::string() : fmt::format("{}", fmt::join(lacking, ", ")));
+  const bool names_them = !lacking.empty() && lacking.size() <= most_names;
+  to_stdout("hypotheses on what the words leave unsaid hold the truth for {} of {} commands{}\n",
+            all.size() - lacking.size(), all.size(),
+            names_them ? fmt::format(", not for {}", fmt::join(lacking, ", ")) : "");
 }
 
 std::string share(int part, int of) { return of == 0 ? "-" : fixed(static_cast<double>(part) / of); }

@@ -17,6 +17,10 @@
 #include <lgabench/core/scenario_files.hpp>
 #include <lgabench/core/suggest.hpp>
 
+namespace lgabench {
+struct Scenario;
+}
+
 namespace lgabench::cli {
 
 /// What the process returns (docs/troubleshooting.md). not_identical: verify's, where only the record's own word says
@@ -82,6 +86,8 @@ inline CLI::Validator within(double low, double high) {
 
 /// The rows that every run has beside its methods, and what they do: {"id", "summary"} each.
 Json reference_rows();
+/// The layouts that all of the scenarios have, in the order of the first one's. @pre there is one
+std::vector<std::string> common_layouts(const std::vector<Scenario>& scenarios);
 
 /// A check for an option: one of those words.
 inline CLI::Validator one_of(std::string what, std::vector<std::string> known) {

@@ -81,7 +81,7 @@ const std::vector<float>& HeatMapNetwork::map(const float* planes, const float* 
   const auto heat = [&](const float* feature, float of_prior) {
     return std::inner_product(feature, feature + features, parameters_[heat_], of_prior);
   };
-  float empty_prior = prior ? prior[0] : 0.f, empty_heat = heat(last.of_empty, empty_prior);
+  const float empty_prior = prior ? prior[0] : 0.f, empty_heat = heat(last.of_empty, empty_prior);
   const float* feature = last.outputs;
   for (int cell = 0; cell < cells; ++cell, feature += features) {
     const Span seen = last.seen[size(cell / grid.columns)];
@@ -207,7 +207,7 @@ double HeatMapNetwork::teach_groups(Vec2 taken_m, std::size_t group, double weig
   groups(taken_m);
   std::vector<Centroid> gradients(features, Centroid{0, 0, 0});
   for (std::size_t g = 0; g < groups_.size(); ++g) {
-    const double of_score = weight * (groups_[g] - (g == group ? 1 : 0));
+    const double of_score = weight * (groups_[g] - (g == group ? 1.f : 0.f));
     parameters_.gradient(score_biases_)[g] += static_cast<float>(of_score);
     for (std::size_t k = 0; k < features; ++k) {
       const std::size_t at = 2 * (g * features + k);
