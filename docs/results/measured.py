@@ -118,6 +118,27 @@ def persons():
     return commands("persons") + table(["row", "questions", *(f"{n} demonstration{'' if n == 1 else 's'}" for n in ns), f"regret at {ns[-1]}"], lines)
 
 
+PICTURED = {"human": "the truth", "lga": "LGA", "taken_features": "most demonstrated names", "gcbc_seg": "GCBC-SEG, no names",
+            "taken_colours": "colours of what was taken, no names", "oracle": "Oracle", "random_object": "random object in view"}
+READERS = {"simulator": "the simulator", "read": "`read`", "read_balanced": "`read_balanced`", "read_drawn": "`read_drawn`", "read_robust": "`read_robust`"}
+
+
+def pictures():
+    """Success by where a mask's names come from, in each arm, and at levels 2 and 4 of each axis."""
+    found = {(row["method"], row["arm"]): row["success"] for row in RUNS["pictures"]["rows"]}
+    axes = [axis for axis in dict.fromkeys(arm[:-2] for _, arm in found if arm[-2:] == "_4") if ("human", f"{axis}_2") in found]
+    arms = [arm for arm in ABOUT["pictures"]["arm_titles"]]
+    lines = []
+    for method, words in PICTURED.items():
+        for reader, by in READERS.items():
+            row = method if reader == "simulator" else f"{method}+names={reader}"
+            if (row, arms[0]) in found and (reader == "simulator" or "no names" not in words):
+                lines.append([words, by if (f"{method}+names=read", arms[0]) in found and "no names" not in words else "",
+                              *(number(found[row, arm]) for arm in arms), *(f"{number(found[row, f'{axis}_2'])} {number(found[row, f'{axis}_4'])}" for axis in axes)])
+    titles = ABOUT["pictures"]["arm_titles"]
+    return commands("pictures") + table(["what is kept", "names from", *titles.values(), *(f"`{axis}` 2, 4" for axis in axes)], lines)
+
+
 RULES = {"random_object": "random object in view", "largest": "largest in the picture", "first_listed": "first that the simulator lists",
           "names": "names in the command", "word_vectors": "nearest by sentence embeddings", "constant_place": "nearest to the usual place",
           "nearest_colour": "nearest mean colour", "nearest_outline": "nearest outline", "nearest_size": "nearest size",
@@ -162,7 +183,7 @@ def leaks(suite):
 
 def rewritten(page):
     """The page's text with each marked table made anew."""
-    tables = {"instruction": instruction, "fidelity": fidelity, "unseen_seed": unseen_seed, "persons": persons, "rivals": lambda: rivals(page.stem),
+    tables = {"instruction": instruction, "fidelity": fidelity, "unseen_seed": unseen_seed, "persons": persons, "pictures": pictures, "rivals": lambda: rivals(page.stem),
               "leaks": lambda: leaks(page.stem)}
     return re.sub(r"(<!-- measured:(\w+) -->\n).*?(<!-- /measured -->)", lambda found: f"{found[1]}\n{tables[found[2]]()}\n{found[3]}",
                   page.read_text(), flags=re.S)

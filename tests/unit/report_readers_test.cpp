@@ -54,7 +54,7 @@ TEST(Readers, AnOptionBesideTheDefaultIsNamedAtItsRowOrOnceForAll) {
   }
   const std::string page = page_of(run);
   EXPECT_SAYS(page, "GCBC-DART without noise</b>");
-  EXPECT_SAYS(page, "Every row: with a heat map, beside the plugins’ defaults.");
+  EXPECT_SAYS(page, "All rows: with a heat map. Every other option has the plugin’s default.");
   EXPECT_SILENT(page, "LGA with a heat map");
 }
 

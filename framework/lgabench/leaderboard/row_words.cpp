@@ -127,8 +127,8 @@ Section words_of_the_board() {
       reading,
       {{{"rank",
          "1 plus the number of entries that are significantly better (paired test on these scenes, Holm’s "
-         "correction) in this ranking, and never less than the rank of an entry with more success. Two entries of one "
-         "rank are not known to differ; it does not say that they are equal."},
+         "correction) in this ranking, and never less than the rank of an entry with more success. Entries "
+         "of one rank are not known to differ, which does not mean that they perform equally."},
         {"–", "no rank: a reference, or a row that the column \"known\" gives a reason for."},
         {"any policy, paper’s network, answers only",
          "three rankings. Any policy: all that learns and acts. Paper’s network: only methods that learn as the paper "
@@ -151,7 +151,7 @@ Section words_of_the_board() {
         {"reproduced", "so did another person, on another machine."},
         {"fresh", "played on scenes that nobody knew when it was submitted, and no worse there."},
         {"not yet replayed", "what the files of an entry claim; nobody has played it again, and it has no rank."},
-        {"claimed by", "somebody says so; the maintainers have not confirmed it."},
+        {"claimed by", "reported by the person named; no maintainer has confirmed it."},
         {"answers",
          "whose words say what matters: recorded with the benchmark, a language model’s replies, or a file that the "
          "entry brings."},

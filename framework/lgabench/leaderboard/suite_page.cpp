@@ -341,10 +341,11 @@ report::Document suite_document(const std::string& suite, const std::vector<Name
     if (!axes_of(table.setting).empty())
       section.add<Paragraph>(
           reading,
-          {{"Entries are compared by area: under the curve of success against an axis’ levels, from the control to the "
-            "last, as the mean over axes and scenarios. Of the control is the area’s share of the success in the "
-            "control, then that of each axis alone, where 1 is no loss. The best constant action keeps all of what it "
-            "has, which is little: read it beside the control."}});
+          {{"The area is what entries are compared by: the mean success from the control to an axis’ last level, "
+            "averaged "
+            "over axes and scenarios. \"Of the control\" divides it by the success in the control; 1 means no loss. "
+            "Each axis has its own column. The best constant action loses nothing because it has little to lose; "
+            "compare its control."}});
     if (!table.standings.empty()) section.add<Grid>(reading, standings_grid(table, first_row));
     if (auto note = below_random_note(table.standings)) section.add<Paragraph>(reading, std::move(*note));
     if (table.undisputed) section.add<Paragraph>(reading, {{words_of(*table.undisputed)}});

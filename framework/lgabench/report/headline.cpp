@@ -170,7 +170,7 @@ Spans setting_line(const RunResults& run) {
   std::vector<std::string> texts;
   for (const auto& [option, value] : shared_options(run)) texts.push_back(fmt::format("{}={}", option, value));
   if (texts.empty()) return {};
-  return {{fmt::format("Every row: {}, beside the plugins’ defaults.", fmt::join(texts, ", "))}};
+  return {{fmt::format("All rows: {}. Every other option has the plugin’s default.", fmt::join(texts, ", "))}};
 }
 
 }  // namespace lgabench::report

@@ -22,7 +22,7 @@ Spans headline(const Material& material, const AboutSuite& about);
 /// The arms of the run, what their test scenes are, and one of these scenes.
 std::vector<ArmLine> arm_lines(const Material& material, const AboutSuite& about);
 
-/// "Every row: policy=heat_map, ...": what all rows share beside the plugins' defaults; empty where that is nothing.
+/// "All rows: policy=heat_map, ...": what all rows share beside the plugins' defaults; empty where that is nothing.
 Spans setting_line(const RunResults& run);
 
 }  // namespace lgabench::report
