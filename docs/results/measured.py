@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Writes into the pages of docs/results and docs/results.md what results/measured says: runs that are no entries of the board, and rules
-without language. A page has a pair of markers <!-- measured:NAME --> and <!-- /measured --> for each table.
+"""Writes into the pages of docs/results and docs/results.md what results/measured says: runs that are no entries of the board, rules
+without language, and tables.json, numbers read from reports. A page has a pair of markers <!-- measured:NAME --> and <!-- /measured -->
+for each table.
 
 Usage: docs/results/measured.py [OUTPUT_DIR]     # without it the pages themselves are written
 """
@@ -14,12 +15,14 @@ ROOT = PAGES.parents[1]
 MEASURED = ROOT / "results/measured"
 RUNS = {file.stem: json.loads(file.read_text()) for file in (MEASURED / "runs").glob("*.json")}
 RIVALS = json.loads((MEASURED / "rivals.json").read_text())
+TABLES = json.loads((MEASURED / "tables.json").read_text())
 ABOUT = {file.stem: json.loads(file.read_text())["about"] for file in (ROOT / "envs").glob("*/suites/*.json")}
 
 
-def table(heads, lines):
-    """A Markdown table whose first column is words and whose others are numbers."""
-    return "\n".join(f"| {' | '.join(line)} |" for line in [heads, ["---"] + ["---:"] * (len(heads) - 1), *lines]) + "\n"
+def table(heads, lines, words=(0,)):
+    """A Markdown table whose columns are numbers but those of the indices in words."""
+    rule = ["---" if i in words else "---:" for i in range(len(heads))]
+    return "\n".join(f"| {' | '.join(line)} |" for line in [heads, rule, *lines]) + "\n"
 
 
 def commands(*runs):
@@ -181,11 +184,30 @@ def leaks(suite):
             f"{number(best('random_object'))}: {found} ([all rules](#without-language)).\n")
 
 
+def shown(cell):
+    """A rate; a rate, its interval, and a further number; rates in a row; a count; or words."""
+    if isinstance(cell, dict):
+        return " ".join(number(rate) for rate in cell["each"])
+    if isinstance(cell, list):
+        rate, low, high, *further = (str(part) if isinstance(part, int) else f"{part:.2f}" for part in cell)
+        return f"{rate} [{low}, {high}]{''.join(f' ({part})' for part in further)}"
+    return number(cell) if isinstance(cell, float) else str(cell)
+
+
+def read_off(name):
+    """A table of tables.json, with the commands whose reports show its numbers."""
+    said = TABLES[name]
+    words = [i for i in range(len(said["columns"])) if all(isinstance(row[i], str) for row in said["rows"])]
+    return "".join(f"    {line}\n" for line in said.get("commands", [])) + ("\n" if "commands" in said else "") + table(
+        said["columns"], [[shown(cell) for cell in row] for row in said["rows"]], words)
+
+
 def rewritten(page):
     """The page's text with each marked table made anew."""
     tables = {"instruction": instruction, "fidelity": fidelity, "unseen_seed": unseen_seed, "persons": persons, "pictures": pictures, "rivals": lambda: rivals(page.stem),
               "leaks": lambda: leaks(page.stem)}
-    return re.sub(r"(<!-- measured:(\w+) -->\n).*?(<!-- /measured -->)", lambda found: f"{found[1]}\n{tables[found[2]]()}\n{found[3]}",
+    made = lambda name: tables[name]() if name in tables else read_off(name)
+    return re.sub(r"(<!-- measured:(\w+) -->\n).*?(<!-- /measured -->)", lambda found: f"{found[1]}\n{made(found[2])}\n{found[3]}",
                   page.read_text(), flags=re.S)
 
 

@@ -99,6 +99,8 @@ class Pages(unittest.TestCase):
         shown = "".join(written.values())
         for run in kept:
             self.assertIn(json.loads((SOURCE / f"results/measured/runs/{run}.json").read_text())["command"], shown, f"{run} stands on no page")
+        for name in json.loads((SOURCE / "results/measured/tables.json").read_text()):
+            self.assertEqual(shown.count(f"<!-- measured:{name} -->"), 1, f"{name} of tables.json stands on one page")
 
     def test_the_figures_of_the_findings_are_their_tables(self):
         page, pictures = (SOURCE / "docs/results.md").read_text(), SOURCE / "docs/pictures"
