@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes what docs/suites.md says from the suites' JSON files, between `<!-- suites:... -->` and `<!-- /suites -->`: overviews,
-and of each suite its title, rows and arms. With the built program also docs/protocol.md's tables of reference rows and perturbation axes
-and, with --gallery, docs/gallery.md's sheets with their legends.
+and of each suite its title, rows and arms; and docs/protocol.md's table of the paper's claims, from results/paper. With the built program
+also that page's tables of reference rows and perturbation axes and, with --gallery, docs/gallery.md's sheets with their legends.
 
 Usage: docs/tables.py [--program LGABENCH [--gallery]] [OUTPUT_DIR]
 """
@@ -139,6 +139,12 @@ def references(lgabench):
                                                        for row in json.loads(said(lgabench, "list", "--json"))["reference rows"]]
 
 
+def claims():
+    of = json.loads((HERE.parent / "results/paper/claims.json").read_text())["claims"]
+    return ["| claim | says | suite |", "| --- | --- | --- |"] + [
+        f"| {claim['id']} | {claim['statement']} | {code([claim['suite']]) if 'suite' in claim else 'any with both'} |" for claim in of]
+
+
 def sheet(lgabench, what, pictures):
     pictures.mkdir(exist_ok=True)
     return said(lgabench, "render", "--gallery", what, "--out", pictures / f"{what}.png").split("\n\n", 1)[1].rstrip("\n").split("\n")
@@ -157,9 +163,10 @@ def main():
     whole = {"overview": overview, "sizes": sizes}
     (given.output / "suites.md").write_text(filled(
         page, "suites", lambda name: whole[name](order) if name in whole else section(SUITES[name])))
+    page = filled((HERE / "protocol.md").read_text(), "paper", lambda name: {"claims": claims}[name]())
     if given.program:
-        page = (HERE / "protocol.md").read_text()
-        (given.output / "protocol.md").write_text(filled(page, "program", lambda name: {"axes": axes, "references": references}[name](given.program)))
+        page = filled(page, "program", lambda name: {"axes": axes, "references": references}[name](given.program))
+    (given.output / "protocol.md").write_text(page)
     if given.program and given.gallery:
         page = (HERE / "gallery.md").read_text()
         (given.output / "gallery.md").write_text(filled(page, "gallery", lambda what: sheet(given.program, what, given.output / "pictures")))
