@@ -293,8 +293,11 @@ class Documents(unittest.TestCase):
             for i, line in enumerate(lines):
                 if i and cells[i] and cells[i - 1] and cells[i] != cells[i - 1]:
                     wrong.append(f"{page.relative_to(SOURCE)}:{i + 1}: {cells[i]} cells below {cells[i - 1]}")
-                if re.fullmatch(r"[|: -]*-[|: -]*", line) and cells[i] and not cells[i - 1]:
+                rule = re.compile(r"[|: -]*-[|: -]*")
+                if rule.fullmatch(line) and cells[i] and not cells[i - 1]:
                     wrong.append(f"{page.relative_to(SOURCE)}:{i + 1}: a table without a head")
+                if cells[i] and not cells[i - 1] and not rule.fullmatch("".join(lines[i + 1:i + 2])):
+                    wrong.append(f"{page.relative_to(SOURCE)}:{i + 1}: a table without a rule below its head")
         self.assertEqual(wrong, [])
 
     def test_numbers_are_written_as_the_programs_print_them(self):
