@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Writes what docs/suites.md says from the suites' JSON files, between `<!-- suites:... -->` and `<!-- /suites -->`: overviews,
-and of each suite its title, rows and arms; and docs/protocol.md's table of the paper's claims, from results/paper. With the built program
-also that page's tables of reference rows and perturbation axes and, with --gallery, docs/gallery.md's sheets with their legends.
+and of each suite its title, rows and arms; docs/protocol.md's table of the paper's claims, from results/paper; and docs/leaderboard.md's of
+tracks. With the built program also the protocol's tables of reference rows and perturbation axes and, with --gallery, docs/gallery.md's
+sheets with their legends.
 
 Usage: docs/tables.py [--program LGABENCH [--gallery]] [OUTPUT_DIR]
 """
@@ -145,6 +146,17 @@ def claims():
         f"| {claim['id']} | {claim['statement']} | {code([claim['suite']]) if 'suite' in claim else 'any with both'} |" for claim in of]
 
 
+def tracks():
+    of = json.loads((HERE.parent / "results/leaderboard/tracks.json").read_text())
+    lines = ["| track | suite | preset | frozen answers | where it decides |", "| --- | --- | --- | --- | --- |"]
+    for track in "abstraction", "open":
+        for name in of[track]:
+            suite, preset = name.split("-")
+            decides = code(of[track][name]) if track == "abstraction" else "–"
+            lines.append(f"| {track} | `{suite}` | `{preset}` | {code(filter(None, [of['frozen'].get(name)])) or '–'} | {decides} |")
+    return lines
+
+
 def sheet(lgabench, what, pictures):
     pictures.mkdir(exist_ok=True)
     return said(lgabench, "render", "--gallery", what, "--out", pictures / f"{what}.png").split("\n\n", 1)[1].rstrip("\n").split("\n")
@@ -167,6 +179,7 @@ def main():
     if given.program:
         page = filled(page, "program", lambda name: {"axes": axes, "references": references}[name](given.program))
     (given.output / "protocol.md").write_text(page)
+    (given.output / "leaderboard.md").write_text(filled((HERE / "leaderboard.md").read_text(), "tracks", lambda name: {"presets": tracks}[name]()))
     if given.program and given.gallery:
         page = (HERE / "gallery.md").read_text()
         (given.output / "gallery.md").write_text(filled(page, "gallery", lambda what: sheet(given.program, what, given.output / "pictures")))

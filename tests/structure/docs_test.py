@@ -117,12 +117,13 @@ class Pages(unittest.TestCase):
                 drawn = re.findall(r">(\d\.\d\d)<", (pictures / name).read_text())
                 self.assertTrue(set(drawn) & set(re.findall(r"\d\.\d\d", finding)), finding)
 
-    def test_the_tables_of_suites_and_claims_are_their_files(self):
+    def test_the_tables_of_suites_claims_and_tracks_are_their_files(self):
         with tempfile.TemporaryDirectory() as made:
             subprocess.run([sys.executable, SOURCE / "docs/tables.py", made], check=True)
-            for name in "suites.md", "protocol.md":
+            for name in "suites.md", "protocol.md", "leaderboard.md":
                 self.assertEqual((SOURCE / "docs" / name).read_text(), (pathlib.Path(made) / name).read_text(), "docs/tables.py writes them")
             self.assertIn("| C1 | ", (pathlib.Path(made) / "protocol.md").read_text())
+            self.assertIn("| open | ", (pathlib.Path(made) / "leaderboard.md").read_text())
 
     def test_every_suite_and_arm_has_its_line_and_a_small_picture(self):
         page, wrong = (SOURCE / "docs/suites.md").read_text(), []
