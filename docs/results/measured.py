@@ -121,25 +121,52 @@ def persons():
     return commands("persons") + table(["row", "questions", *(f"{n} demonstration{'' if n == 1 else 's'}" for n in ns), f"regret at {ns[-1]}"], lines)
 
 
-PICTURED = {"human": "the truth", "lga": "LGA", "taken_features": "most demonstrated names", "gcbc_seg": "GCBC-SEG, no names",
-            "taken_colours": "colours of what was taken, no names", "oracle": "Oracle", "random_object": "random object in view"}
+PICTURED = {"human": "the truth", "lga": "LGA", "taken_features": "most demonstrated names", "gcbc_seg": "GCBC-SEG",
+            "taken_colours": "colours of what was taken", "oracle": "Oracle", "random_object": "random object in view"}
+READ = "human", "lga", "taken_features"  # the others' masks need no names
 READERS = {"simulator": "the simulator", "read": "`read`", "read_balanced": "`read_balanced`", "read_drawn": "`read_drawn`", "read_robust": "`read_robust`"}
+
+
+def at_levels(found, row, axis):
+    """Success at levels 2 and 4."""
+    return f"{number(found[row, f'{axis}_2'])} {number(found[row, f'{axis}_4'])}"
+
+
+def axes_of(found):
+    return list(dict.fromkeys(arm[:-2] for _, arm in found if arm.endswith("_4") and not arm.startswith(("near", "others"))))
 
 
 def pictures():
     """Success by where a mask's names come from, in each arm, and at levels 2 and 4 of each axis."""
-    found = {(row["method"], row["arm"]): row["success"] for row in RUNS["pictures"]["rows"]}
-    axes = [axis for axis in dict.fromkeys(arm[:-2] for _, arm in found if arm[-2:] == "_4") if ("human", f"{axis}_2") in found]
-    arms = [arm for arm in ABOUT["pictures"]["arm_titles"]]
-    lines = []
-    for method, words in PICTURED.items():
-        for reader, by in READERS.items():
-            row = method if reader == "simulator" else f"{method}+names={reader}"
-            if (row, arms[0]) in found and (reader == "simulator" or "no names" not in words):
-                lines.append([words, by if (f"{method}+names=read", arms[0]) in found and "no names" not in words else "",
-                              *(number(found[row, arm]) for arm in arms), *(f"{number(found[row, f'{axis}_2'])} {number(found[row, f'{axis}_4'])}" for axis in axes)])
+    runs = "pictures_truth", "pictures_language", "pictures_looks"
+    found = {(row["method"], row["arm"]): row["success"] for run in runs for row in RUNS[run]["rows"]}
     titles = ABOUT["pictures"]["arm_titles"]
-    return commands("pictures") + table(["what is kept", "names from", *titles.values(), *(f"`{axis}` 2, 4" for axis in axes)], lines)
+    lines = [[words, by if method in READ else "", *(number(found[row, arm]) for arm in titles), *(at_levels(found, row, axis) for axis in axes_of(found))]
+             for method, words in PICTURED.items() for reader, by in READERS.items()
+             if ((row := method if reader == "simulator" else f"{method}+names={reader}"), "near_4") in found]
+    return commands(*runs) + table(["what is kept", "names from", *titles.values(), *(f"`{axis}` 2, 4" for axis in axes_of(found))], lines)
+
+
+def reading():
+    """Of each arm the shares of exact scenes, and of objects whose type and whose texture is read rightly."""
+    value = json.loads((MEASURED / "reading.json").read_text())
+    found = {(row["arm"], row["names"]): row for row in value["rows"]}
+    readers = [reader for reader in READERS if reader != "simulator"]
+    arms = sorted(dict.fromkeys(arm for arm, _ in found), key=lambda arm: arm not in ABOUT["pictures"]["arm_titles"])
+    shares = lambda row: ", ".join(number(row[part] / row[of]) for part, of in (("exact_scenes", "scenes"), ("types_right", "objects"), ("textures_right", "objects")))
+    return f"    {value['command'].removesuffix(' --json')}\n\n" + table(
+        ["arm", *(READERS[reader] for reader in readers)],
+        [[f"`{arm}`", *(shares(found[arm, reader]) for reader in readers)] for arm in arms])
+
+
+def perturbations_read():
+    """Success of the true mask by where its names come from, in the control and at levels 2 and 4 of each axis."""
+    found = {(row["method"], row["arm"]): row["success"] for row in RUNS["perturbations_read"]["rows"]}
+    rows = {reader: "human" if reader == "simulator" else f"human+names={reader}" for reader in ("simulator", "read", "read_robust")}
+    return commands("perturbations_read") + table(
+        ["axis, levels 2, 4", *(READERS[reader] for reader in rows)],
+        [["control", *(number(found[row, "control"]) for row in rows.values())],
+         *([f"`{axis}`", *(at_levels(found, row, axis) for row in rows.values())] for axis in axes_of(found))])
 
 
 RULES = {"random_object": "random object in view", "largest": "largest in the picture", "first_listed": "first that the simulator lists",
@@ -204,7 +231,7 @@ def read_off(name):
 
 def rewritten(page):
     """The page's text with each marked table made anew."""
-    tables = {"instruction": instruction, "fidelity": fidelity, "unseen_seed": unseen_seed, "persons": persons, "pictures": pictures, "rivals": lambda: rivals(page.stem),
+    tables = {"instruction": instruction, "fidelity": fidelity, "unseen_seed": unseen_seed, "persons": persons, "pictures": pictures, "reading": reading, "perturbations_read": perturbations_read, "rivals": lambda: rivals(page.stem),
               "leaks": lambda: leaks(page.stem)}
     made = lambda name: tables[name]() if name in tables else read_off(name)
     return re.sub(r"(<!-- measured:(\w+) -->\n).*?(<!-- /measured -->)", lambda found: f"{found[1]}\n{made(found[2])}\n{found[3]}",
