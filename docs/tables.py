@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes what docs/suites.md says from the suites' JSON files, between `<!-- suites:... -->` and `<!-- /suites -->`: overviews,
-and of each suite its title, rows and arms; docs/protocol.md's table of the paper's claims, from results/paper; and docs/leaderboard.md's of
-tracks. With the built program also the protocol's tables of reference rows and perturbation axes and, with --gallery, docs/gallery.md's
-sheets with their legends.
+and of each suite its title, rows and arms; docs/protocol.md's table of the paper's claims, from results/paper; docs/leaderboard.md's of
+tracks; and code of the examples on the pages for authors, between `<!-- code:FILE, FROM .. TO -->` and `<!-- /code -->`. With the built
+program also the protocol's tables of reference rows and perturbation axes and, with --gallery, docs/gallery.md's sheets with their legends.
 
 Usage: docs/tables.py [--program LGABENCH [--gallery]] [OUTPUT_DIR]
 """
@@ -121,6 +121,20 @@ def filled(page, kind, contents):
                   lambda found: f"{found[1]}\n" + "\n".join(contents(found[2])) + f"\n\n{found[3]}", page, flags=re.S)
 
 
+def coded(page):
+    """The page with the code that its marks name: a file, or its lines from one text to another and the brace that closes them."""
+    def block(found):
+        name, part, first, last = found[2], *re.fullmatch(r"(?:, (.*?) \.\. (.*))?", found[3]).group(0, 1, 2)
+        lines = (HERE.parent / name).read_text().splitlines()
+        if part:
+            begin = next(i for i, line in enumerate(lines) if first in line)
+            end = next(i for i, line in enumerate(lines) if i >= begin and last in line) + 1
+            lines = lines[begin:end + (lines[end].strip() == "}")]
+        language = "cmake" if name.endswith("CMakeLists.txt") else "cpp"
+        return "\n".join([found[1], "", f"```{language}", *lines, "```", "", "<!-- /code -->"])
+    return re.sub(r"(<!-- code:([^ ,]+)(.*?) -->)\n.*?<!-- /code -->", block, page, flags=re.S)
+
+
 def said(lgabench, *arguments):
     return subprocess.run([lgabench, *arguments], check=True, capture_output=True, text=True).stdout
 
@@ -175,6 +189,8 @@ def main():
     whole = {"overview": overview, "sizes": sizes}
     (given.output / "suites.md").write_text(filled(
         page, "suites", lambda name: whole[name](order) if name in whole else section(SUITES[name])))
+    for name in "add-a-method.md", "extending.md":
+        (given.output / name).write_text(coded((HERE / name).read_text()))
     page = filled((HERE / "protocol.md").read_text(), "paper", lambda name: {"claims": claims}[name]())
     if given.program:
         page = filled(page, "program", lambda name: {"axes": axes, "references": references}[name](given.program))

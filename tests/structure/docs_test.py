@@ -117,10 +117,10 @@ class Pages(unittest.TestCase):
                 drawn = re.findall(r">(\d\.\d\d)<", (pictures / name).read_text())
                 self.assertTrue(set(drawn) & set(re.findall(r"\d\.\d\d", finding)), finding)
 
-    def test_the_tables_of_suites_claims_and_tracks_are_their_files(self):
+    def test_the_tables_of_suites_claims_and_tracks_and_the_shown_code_are_their_files(self):
         with tempfile.TemporaryDirectory() as made:
             subprocess.run([sys.executable, SOURCE / "docs/tables.py", made], check=True)
-            for name in "suites.md", "protocol.md", "leaderboard.md":
+            for name in "suites.md", "protocol.md", "leaderboard.md", "add-a-method.md", "extending.md":
                 self.assertEqual((SOURCE / "docs" / name).read_text(), (pathlib.Path(made) / name).read_text(), "docs/tables.py writes them")
             self.assertIn("| C1 | ", (pathlib.Path(made) / "protocol.md").read_text())
             self.assertIn("| open | ", (pathlib.Path(made) / "leaderboard.md").read_text())
