@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the tables of members in docs/formats from the descriptions in the schemas there.
+"""Writes the tables of members in docs/formats from the descriptions in the schemas there; those of docs/formats/method-protocol.md
+between `<!-- messages:... -->` and `<!-- /messages -->`.
 
 Usage: docs/members.py [OUTPUT_DIR]
 """
@@ -146,10 +147,59 @@ def page(title, schemas):
     return text
 
 
+class Messages:
+    """The messages of the method protocol as tables with a line each."""
+
+    def __init__(self):
+        self.of = json.loads((FORMATS / "host_message.schema.json").read_text())["definitions"]
+
+    def members(self, node):
+        said = []
+        for name, one in node.get("properties", {}).items():
+            if "description" in one or "$ref" in one:  # type and how stand in columns of their own
+                refers = one.get("items", one).get("$ref", "").rpartition("/")[2]
+                refers = f"{'list of ' if 'items' in one else ''}{refers.upper()}" if refers not in ("", "arrays", "action_space") else ""
+                value = ", ".join(filter(None, [refers, one.get("description", "")]))
+                words = f" ({', '.join(f'`{word}`' for word in one['enum'])})" if "enum" in one else ""
+                said.append(f"`{name}`{'' if name in node['required'] else ', optional'}: {value}{words}")
+        return "; ".join(said)
+
+    def message(self, name):
+        """`type`, when it comes, with its members; its payload."""
+        node = self.of[name]
+        head = ", ".join(filter(None, [f"`{node['properties']['type']['const']}`", node["description"]]))
+        payload = f"payload: {node['x-payload']}" if "x-payload" in node else ""
+        return " with ".join(filter(None, [head, "; ".join(filter(None, [self.members(node), payload]))]))
+
+    def table(self, which):
+        if which in ("action_space", "arrays"):
+            rows = [f"| `{name}` | {one['description']} |" for name, one in self.of[which]["properties"].items()]
+            return [f"| {'array' if which == 'arrays' else 'member of `action`'} | what |", "| --- | --- |", *rows]
+        if which == "values":
+            plain = [name for name, node in self.of.items() if "x-kind" not in node and name not in ("action_space", "array", "arrays")]
+            return ["| value | JSON |", "| --- | --- |", *(
+                f"| {name.upper()} | {': '.join(filter(None, [self.of[name]['description'], name != 'selection' and self.members(self.of[name])]))} |" for name in plain)]
+        rows = []
+        for node in (node for node in self.of.values() if node.get("x-kind") == which):
+            kind, how = node["properties"]["type"]["const"], node["properties"].get("how", {})
+            words = ", ".join(f"`{word}`" for word in how.get("enum", [how.get("const")]) if word) or "–"
+            first = [f"`{kind}`", words] if which == "question" else [", ".join(filter(None, [f"`{kind}`", node["description"]]))]
+            last = [] if which == "question" else [node.get("x-file", "")]
+            rows.append("| " + " | ".join([*first, self.members(node) or "–", *last, self.message(node["x-reply"])]) + " |")
+        if which == "question":
+            return ["| `type` | `how` | members | the worker's answer |", "| --- | --- | --- | --- |", *rows]
+        return ["| `type` | members | file | your reply |", "| --- | --- | --- | --- |", *rows]
+
+    def filled(self, page):
+        return re.sub(r"(<!-- messages:(\w+) -->\n).*?(<!-- /messages -->)",
+                      lambda found: "\n".join([found[1], *self.table(found[2]), "", found[3]]), page, flags=re.S)
+
+
 def main():
     out = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else FORMATS)
     for name, (title, schemas) in PAGES.items():
         (out / f"{name}.md").write_text(page(title, schemas))
+    (out / "method-protocol.md").write_text(Messages().filled((FORMATS / "method-protocol.md").read_text()))
 
 
 if __name__ == "__main__":
