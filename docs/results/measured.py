@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes into the pages of docs/results and docs/results.md what results/measured says: runs that are no entries of the board, rules
-without language, and tables.json, numbers read from reports. A page has a pair of markers <!-- measured:NAME --> and <!-- /measured -->
-for each table.
+"""Writes into the pages of docs/results, docs/results.md and docs/performance.md what results/measured says: runs that are no entries
+of the board, rules without language, tables.json, numbers read from reports, and speed.txt, the table of `lgabench-benchmarks --summary`.
+A page has a pair of markers <!-- measured:NAME --> and <!-- /measured --> for each table.
 
 Usage: docs/results/measured.py [OUTPUT_DIR]     # without it the pages themselves are written
 """
@@ -231,7 +231,7 @@ def read_off(name):
 
 def rewritten(page):
     """The page's text with each marked table made anew."""
-    tables = {"instruction": instruction, "fidelity": fidelity, "unseen_seed": unseen_seed, "persons": persons, "pictures": pictures, "reading": reading, "perturbations_read": perturbations_read, "rivals": lambda: rivals(page.stem),
+    tables = {"instruction": instruction, "fidelity": fidelity, "unseen_seed": unseen_seed, "persons": persons, "pictures": pictures, "reading": reading, "speed": lambda: (MEASURED / "speed.txt").read_text(), "perturbations_read": perturbations_read, "rivals": lambda: rivals(page.stem),
               "leaks": lambda: leaks(page.stem)}
     made = lambda name: tables[name]() if name in tables else read_off(name)
     return re.sub(r"(<!-- measured:(\w+) -->\n).*?(<!-- /measured -->)", lambda found: f"{found[1]}\n{made(found[2])}\n{found[3]}",
@@ -240,7 +240,7 @@ def rewritten(page):
 
 def main():
     out = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else None
-    for page in [PAGES.parent / "results.md", *sorted(PAGES.glob("*.md"))]:
+    for page in [PAGES.parent / "results.md", PAGES.parent / "performance.md", *sorted(PAGES.glob("*.md"))]:
         if "<!-- measured:" in page.read_text():
             (out / page.name if out else page).write_text(rewritten(page))
 
