@@ -46,6 +46,9 @@ FIGURES = {
     "perturbations": [("mask, either", "perturbations", NETWORK, LIGHT, "LGA"), ("beside, heat_map", "perturbations", AREAS, LIGHT, "LGA-S"),
                       ("beside, network", "perturbations", NETWORK, LIGHT, "LGA-S"), ("SEG, heat_map", "perturbations", AREAS, LIGHT, "GCBC-SEG"),
                       ("SEG, network", "perturbations", NETWORK, LIGHT, "GCBC-SEG")],
+    "pictures": [(label, "pictures", "Success", row, "`light_colour` 2, 4") for label, row in (
+        ("given names", "the truth|the simulator"), ("read", "the truth|`read`"), ("read, balanced", "the truth|`read_balanced`"),
+        ("GCBC-SEG", "GCBC-SEG"), ("random object", "random object in view"))],
     "words": [(label, "words", "What is selected", "**all**", asked) for label, asked in (
         ("a feature each", "asked of each feature (LGA)"), ("one meaning", "asked what is meant"), ("names alone", "the names in the command"))],
 }

@@ -34,7 +34,7 @@ const std::vector<Promise>& promises() {
        1.4, 1.2},
       {"episode, six near misses, Bullet with two", "crowd/bullet/near_6", "crowd/bullet/near_2", Unit::times_as_long,
        1.6, 1.4},
-      {"episode, VIMABench's .87 s", "episode/heart", "", Unit::times_as_fast, 100, 250, .87},
+      {"episode, VIMABench's 0.87 s", "episode/heart", "", Unit::times_as_fast, 100, 250, .87},
       {"reset without pictures, 50 microseconds", "reset", "", Unit::times_as_fast, 1, 2, 50e-6},
       {"picture and ids, MuJoCo on llvmpipe without shadow", "picture", "picture/llvmpipe", Unit::times_as_fast, 1.5,
        4},
