@@ -6,9 +6,12 @@ import html.parser
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import unittest
+
+from facts_test import facts
 
 SOURCE = pathlib.Path(sys.argv[1])
 SITE = SOURCE / "build/site"
@@ -53,6 +56,17 @@ class Site(unittest.TestCase):
     def test_search_finds_words_of_the_glossary(self):
         index = "".join(file.read_text() for file in (SITE / "search").iterdir())
         self.assertIn("covariate shift", index)
+
+    @unittest.skipUnless(shutil.which("node"), "Node.js is not installed: it runs the site's search")
+    def test_search_leads_to_the_page_of_each_fact(self):
+        """One of the first three."""
+        known = facts()
+        queries = dict.fromkeys(query for _, _, query, _ in known)
+        done = subprocess.run(["node", pathlib.Path(__file__).with_name("search.js"), SITE], input="\n".join(queries),
+                              capture_output=True, text=True, check=True)
+        found = {query: pages for query, *pages in (line.split("\t") for line in done.stdout.splitlines())}
+        self.assertEqual(set(found), set(queries))
+        self.assertEqual([(kind, query, found[query]) for kind, _, query, page in known if f"docs/{page}.html" not in found[query]], [])
 
     def test_lists_and_tables_are_lists_and_tables(self):
         """What GitHub takes for a list or a table and MkDocs does not, such as a list right below a paragraph."""
