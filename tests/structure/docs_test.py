@@ -258,6 +258,10 @@ class Documents(unittest.TestCase):
         self.assertEqual([page for page in pages if page != "README.md" and f"({page})" not in index], [])
         self.assertEqual([page for page in pages if page != "decisions.md" and f": docs/{page}\n" not in site], [])  # not for users
 
+    def test_the_site_has_seven_entries_at_the_top(self):
+        top = re.findall(r"^  - (.*?):", (SOURCE / "mkdocs.yml").read_text().split("\nnav:\n")[1], re.M)
+        self.assertEqual(top, ["Home", "Get started", "Guides", "Benchmark", "Board", "Results", "Reference"])
+
     def test_a_word_of_the_report_has_one_definition(self):
         words = {}
         for page in "glossary", "reading-a-report":
