@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include <lgabench/abstraction/prompt.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/record/fields.hpp>
 #include <lgabench/record/layout.hpp>
 
 namespace lgabench {
@@ -20,10 +20,6 @@ std::string folder_hash(const fs::path& folder) {
   for (const std::string& name : json_names(folder, none_to_hash))
     lines += fmt::format("{}.json {}\n", name, sha256_file(folder / (name + ".json")));
   return sha256(lines);
-}
-
-std::uint64_t seed_at(const JsonReader& reader) {
-  return static_cast<std::uint64_t>(reader.integer(0, std::numeric_limits<std::int64_t>::max()));
 }
 
 }  // namespace
@@ -50,90 +46,75 @@ std::optional<std::uint64_t> Cell::scenes_of_seed() const {
   return test_scenes == TestScenes::per_seed ? std::optional(training_seed) : std::nullopt;
 }
 
-Json to_json(const ActingMethod& acts) {
-  return {{"id", acts.id}, {"version", acts.version}, {"options", acts.options}};
+void visit(const Slot& slot, AnswerSource& source, const Form& form) {
+  std::string word = to_string(source);
+  visit(slot, word, form);
+  if (slot.read) source = read_answer_source(word);
 }
 
-ActingMethod read_acting_method(const JsonReader& reader) {
-  reader.only({"id", "version", "options"});
-  ActingMethod acts{reader.at("id").string(), reader.at("version").string(), reader.at("options").json()};
-  if (!acts.options.is_object()) reader.at("options").fail("an object");
-  return acts;
+static void visit(const Slot& slot, std::shared_ptr<const Json>& any, const Form&) {
+  if (slot.read) any = std::make_shared<const Json>(slot.read->json());
+  if (slot.write) *slot.write = *any;
 }
 
-Json to_json(const Cell& cell) {
-  Json json{{"suite", cell.suite},
-            {"environment", cell.environment},
-            {"layout", cell.layout},
-            {"scenario", *cell.scenario},
-            {"engine", cell.engine},
-            {"method",
-             {{"kind", cell.method.kind},
-              {"id", cell.method.id},
-              {"name", cell.method.name},
-              {"version", cell.method.version},
-              {"options", cell.method.options}}},
-            {"demonstrations", cell.demonstrations},
-            {"training_seed", cell.training_seed},
-            {"scene_seed", cell.scene_seed},
-            {"test_scenes", cell.test_scenes},
-            {"episodes", cell.episodes},
-            {"answers", to_string(cell.answers)},
-            {"data", cell.data},
-            {"smoke", cell.smoke}};
-  if (!cell.method.asks.empty()) json["method"]["asks"] = cell.method.asks;
-  if (cell.method.acts) json["method"]["acts"] = to_json(*cell.method.acts);
-  if (cell.participant) json["participant"] = {{"id", cell.participant->id}, {"sha256", cell.participant->sha256}};
-  if (!cell.selection_errors.none()) json["selection_errors"] = to_json(cell.selection_errors);
-  if (cell.train_on) json["train_on"] = to_json(*cell.train_on);
-  if (cell.reading.names != Reading::simulator) json["names"] = cell.reading.names;
-  if (cell.reading.segments != Reading::simulator) json["segments"] = cell.reading.segments;
-  if (cell.participant && cell.participant->rehearsal) json["participant"]["rehearsal"] = true;
-  return json;
+static void visit(const Slot& slot, SelectionErrors& errors, const Form&) {
+  if (slot.read) errors = read_selection_errors(*slot.read);
+  if (slot.write) *slot.write = to_json(errors);
 }
 
-Cell read_cell(const Json& json, const std::string& file) {
-  const JsonReader reader(json, file);
-  reader.only({"suite", "environment", "layout", "scenario", "engine", "method", "demonstrations", "training_seed",
-               "scene_seed", "test_scenes", "episodes", "answers", "participant", "selection_errors", "train_on",
-               "names", "segments", "data", "smoke"});
-  const JsonReader method = reader.at("method");
-  method.only({"kind", "id", "name", "version", "options", "asks", "acts"});
-  constexpr long long most = std::numeric_limits<int>::max();
-
-  Cell cell;
-  cell.suite = reader.at("suite").string();
-  cell.environment = reader.at("environment").string();
-  cell.layout = reader.at("layout").string();
-  cell.scenario = std::make_shared<const Json>(reader.at("scenario").json());
-  reader.at("scenario").at("id").string();
-  cell.engine = reader.at("engine").string();
-  cell.method = {method.at("kind").string(), method.at("id").string(), method.at("name").string(),
-                 method.at("version").string(), method.at("options").json()};
-  if (!cell.method.options.is_object()) method.at("options").fail("an object");
-  if (method.has("asks")) cell.method.asks = method.at("asks").string();
-  if (method.has("acts")) cell.method.acts = read_acting_method(method.at("acts"));
-  if (cell.method.kind != "method" && cell.method.kind != "reference") method.at("kind").fail("method or reference");
-  cell.demonstrations = static_cast<int>(reader.at("demonstrations").integer(0, most));
-  cell.training_seed = seed_at(reader.at("training_seed"));
-  cell.scene_seed = seed_at(reader.at("scene_seed"));
-  if (reader.has("test_scenes")) cell.test_scenes = read_test_scenes(reader.at("test_scenes"));
-  cell.episodes = static_cast<int>(reader.at("episodes").integer(1, most));
-  cell.answers = read_answer_source(reader.at("answers").string());
-  if (reader.has("participant")) {
-    const JsonReader participant = reader.at("participant");
-    participant.only({"id", "sha256", "rehearsal"});
-    cell.participant = CellParticipant{participant.at("id").string(), participant.at("sha256").string(),
-                                       participant.has("rehearsal") && participant.at("rehearsal").boolean()};
-  }
-  if (reader.has("selection_errors")) cell.selection_errors = read_selection_errors(reader.at("selection_errors"));
-  if (reader.has("train_on")) cell.train_on = read_train_on(reader.at("train_on"));
-  if (reader.has("names")) cell.reading.names = reader.at("names").string();
-  if (reader.has("segments")) cell.reading.segments = read_segments(reader.at("segments"));
-  cell.data = reader.at("data").json();
-  cell.smoke = reader.at("smoke").boolean();
-  return cell;
+void fields(ActingMethod& acts, Fields& field) {
+  field("id", acts.id);
+  field("version", acts.version);
+  field("options", acts.options, object());
 }
+
+static void fields(Competitor& method, Fields& field) {
+  field("kind", method.kind, one_of(competitor_kinds));
+  field("id", method.id);
+  field("name", method.name);
+  field("version", method.version);
+  field("options", method.options, object());
+  field("asks", method.asks, when(!method.asks.empty()));
+  field("acts", method.acts, when(method.acts.has_value()));
+}
+
+static void fields(CellParticipant& participant, Fields& field) {
+  field("id", participant.id);
+  field("sha256", participant.sha256);
+  field("rehearsal", participant.rehearsal, when(participant.rehearsal));
+}
+
+// A cell's key is a hash of these bytes: what is new is written only where it is set.
+void fields(Cell& cell, Fields& field) {
+  field("suite", cell.suite);
+  field("environment", cell.environment);
+  field("layout", cell.layout);
+  field("scenario", cell.scenario);
+  if (field.reading()) field.reading()->at("scenario").at("id").string();
+  field("engine", cell.engine);
+  field("method", cell.method);
+  field("demonstrations", cell.demonstrations);
+  field("training_seed", cell.training_seed);
+  field("scene_seed", cell.scene_seed);
+  field("test_scenes", cell.test_scenes, may_lack());
+  field("episodes", cell.episodes, at_least(1));
+  field("answers", cell.answers);
+  field("participant", cell.participant, when(cell.participant.has_value()));
+  field("selection_errors", cell.selection_errors, when(!cell.selection_errors.none()));
+  field("train_on", cell.train_on, when(cell.train_on.has_value()));
+  field("names", cell.reading.names, when(cell.reading.names != Reading::simulator));
+  field("segments", cell.reading.segments, segments_form(cell.reading));
+  field("data", cell.data);
+  field("smoke", cell.smoke);
+}
+
+Json to_json(const ActingMethod& acts) { return json_of(acts); }
+
+ActingMethod read_acting_method(const JsonReader& reader) { return value_of<ActingMethod>(reader); }
+
+Json to_json(const Cell& cell) { return json_of(cell); }
+
+Cell read_cell(const Json& json, const std::string& file) { return value_of<Cell>(JsonReader(json, file)); }
 
 Cell recorded_cell(const fs::path& directory) {
   const fs::path file = directory / cell_file::configuration;

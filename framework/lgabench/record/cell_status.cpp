@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <limits>
+#include <array>
 #include <string_view>
 
+#include <lgabench/core/fields.hpp>
 #include <lgabench/core/hash.hpp>
-#include <lgabench/record/cell.hpp>
 #include <lgabench/record/layout.hpp>
 
 namespace lgabench {
@@ -21,44 +21,36 @@ bool has_status(const fs::path& cell) {
   return fs::exists(file_of(cell), not_there);
 }
 
-CellStatus read_cell_status(const fs::path& cell) {
-  const Json json = read_json(file_of(cell), Links::refused);
-  const JsonReader reader(json, file_of(cell).string());
-  CellStatus status;
-  const std::string state = reader.at("state").string();
-  if (state != "ok" && state != "failed") reader.at("state").fail("ok or failed");
-  status.failed = state == "failed";
-  if (!reader.at("build").json().is_object()) reader.at("build").fail("an object");
-  status.build = reader.at("build").json();
+void fields(CellStatus& status, Fields& field) {
+  static constexpr std::array states{"ok", "failed"};
+  std::string state = states.at(status.failed ? 1 : 0);
+  field("state", state, one_of(states));
+  status.failed = state == states[1];
+  field("build", status.build, object());
+  const JsonReader* const reader = field.reading();
+  if (Json files(status.files); !reader || !status.failed) field("files", files, object());
   if (!status.failed) {
-    const JsonReader files = reader.at("files");
     std::vector<std::string> names{cell_files.begin(), cell_files.end()};
     names.emplace_back(cell_file::perturbed);
-    files.only(names);
-    for (const auto& file : files.json().items()) status.files[file.key()] = files.at(file.key()).string();
-    if (reader.has("method_error")) status.method_error = reader.at("method_error").string();
-    return status;
+    if (reader) reader->at("files").only(names);
+    for (const std::string& name : names)
+      if (reader && reader->at("files").has(name)) status.files[name] = reader->at("files").at(name).string();
+    field("method_error", status.method_error, when(!status.method_error.empty()));
+    return;
   }
-  const auto text = [&](const char* member) { return reader.has(member) ? reader.at(member).string() : std::string(); };
-  status.reason = text("reason");
-  status.fault = text("fault");
-  if (reader.has("signal") && !reader.at("signal").json().is_null())
-    status.signal = static_cast<int>(reader.at("signal").integer(1, std::numeric_limits<int>::max()));
-  if (reader.has("log_tail")) status.log_tail = reader.at("log_tail").strings();
-  return status;
+  field("reason", status.reason, may_lack());
+  field("fault", status.fault, may_lack());
+  field("signal", status.signal, or_null(status.signal == 0, at_least(1, may_lack())));
+  field("log_tail", status.log_tail, may_lack());
+}
+
+CellStatus read_cell_status(const fs::path& cell) {
+  const Json json = read_json(file_of(cell), Links::refused);
+  return value_of<CellStatus>(JsonReader(json, file_of(cell).string()), false);
 }
 
 void write_cell_status(const fs::path& cell, const CellStatus& status) {
-  Json json{{"state", status.failed ? "failed" : "ok"}, {"build", status.build}, {"files", Json::object()}};
-  for (const auto& [name, hash] : status.files) json["files"][name] = hash;
-  if (status.failed)
-    json.update({{"reason", status.reason},
-                 {"fault", status.fault},
-                 {"signal", status.signal ? Json(status.signal) : Json()},
-                 {"log_tail", status.log_tail}});
-  else if (!status.method_error.empty())
-    json["method_error"] = status.method_error;
-  write_file(file_of(cell), canonical(json) + '\n');
+  write_file(file_of(cell), canonical(json_of(status)) + '\n');
 }
 
 fs::path changed_file(const fs::path& cell, const CellStatus& status) {

@@ -2,36 +2,26 @@
 
 #include <limits>
 
+#include <lgabench/core/fields.hpp>
+
 namespace lgabench {
-namespace {
 
-Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
-
-std::string text_at(const JsonReader& reader) { return reader.json().is_null() ? "" : reader.string(); }
-
-}  // namespace
-
-Json to_json(const PerturbedEpisode& e) {
-  Json json{{"arm", e.arm}, {"index", e.index}, {"axis", text_or_null(e.axis)}, {"level", e.level}};
-  for (std::size_t part = 0; part < parts; ++part) json[part_names[part]] = text_or_null(e.hashes[part]);
-  json["read"] = text_or_null(e.read);
-  if (!e.names.empty()) json["names"] = e.names;
-  json["target_scale"] = e.target_scale;
-  return json;
-}
-
-PerturbedEpisode read_perturbed_episode(const JsonReader& reader) {
+void fields(PerturbedEpisode& e, Fields& field) {
   constexpr long long most = std::numeric_limits<int>::max();
-  PerturbedEpisode e;
-  e.arm = reader.at("arm").string();
-  e.index = static_cast<int>(reader.at("index").integer(0, most));
-  e.axis = text_at(reader.at("axis"));
-  e.level = static_cast<int>(reader.at("level").integer(e.axis.empty() ? 0 : 1, e.axis.empty() ? 0 : most));
-  for (std::size_t part = 0; part < parts; ++part) e.hashes[part] = text_at(reader.at(part_names[part]));
-  e.read = text_at(reader.at("read"));
-  if (reader.has("names")) e.names = text_at(reader.at("names"));
-  if (reader.has("target_scale")) e.target_scale = reader.at("target_scale").number();
-  return e;
+  field("arm", e.arm);
+  field("index", e.index);
+  field("axis", e.axis, or_null(e.axis.empty()));
+  const bool control = field.reading() && e.axis.empty();
+  field("level", e.level, within(e.axis.empty() ? 0 : 1, control ? 0 : most));
+  for (std::size_t part = 0; part < parts; ++part)
+    field(part_names[part], e.hashes[part], or_null(e.hashes[part].empty()));
+  field("read", e.read, or_null(e.read.empty()));
+  field("names", e.names, or_null(false, when(!e.names.empty())));
+  field("target_scale", e.target_scale, may_lack());
 }
+
+Json to_json(const PerturbedEpisode& episode) { return json_of(episode); }
+
+PerturbedEpisode read_perturbed_episode(const JsonReader& reader) { return value_of<PerturbedEpisode>(reader, false); }
 
 }  // namespace lgabench

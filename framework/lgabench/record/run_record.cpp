@@ -2,42 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <lgabench/core/fields.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/record/suite_claims.hpp>
 
 namespace lgabench {
 namespace {
-
-std::string text_at(const JsonReader& reader, const char* member) {
-  return reader.has(member) ? reader.at(member).string() : "";
-}
-
-Json object_at(const JsonReader& reader, const char* member) {
-  if (!reader.has(member)) return Json::object();
-  const JsonReader value = reader.at(member);
-  if (!value.json().is_object()) value.fail("an object");
-  return value.json();
-}
-
-std::vector<RunRecord::Plugin> plugins_at(const JsonReader& reader) {
-  std::vector<RunRecord::Plugin> plugins;
-  if (reader.has("plugins"))
-    for (const JsonReader& plugin : reader.at("plugins").elements())
-      plugins.push_back({plugin.at("kind").string(), plugin.at("id").string(), plugin.at("version").string(),
-                         plugin.at("sha256").string(), text_at(plugin, "asks")});
-  return plugins;
-}
-
-std::optional<RunRecord::Shard> shard_at(const JsonReader& reader, std::size_t cells) {
-  if (!reader.has("shard") || reader.at("shard").json().is_null()) return std::nullopt;
-  const JsonReader shard = reader.at("shard");
-  RunRecord::Shard one;
-  one.count = static_cast<int>(shard.at("count").integer(1, 1 << 30));
-  one.index = static_cast<int>(shard.at("index").integer(1, one.count));
-  one.cells = static_cast<std::size_t>(shard.at("cells").integer(0, static_cast<long long>(cells)));
-  return one;
-}
 
 // "0.3" of "0.3.0"
 std::string series(const std::string& version) { return version.substr(0, version.rfind('.')); }
@@ -61,58 +32,59 @@ RunRecord read_run_record(const fs::path& run) {
   return read_run_record(read_json(record_file(run), Links::refused), record_file(run).string());
 }
 
-RunRecord read_run_record(const Json& json, const std::string& file) {
-  const JsonReader reader(json, file);
-  RunRecord record;
-  record.version = reader.at("version").string();
-  if (const std::string old = series(record.version); old == "0.1" || old == "0.2")
-    throw InputError(
-        fmt::format("{}: of lgabench {}, whose runs {} does not read", file, record.version, LGABENCH_VERSION));
-  record.suite = reader.at("suite").string();
-  record.preset = text_at(reader, "preset");
-  record.smoke = reader.at("smoke").boolean();
-  record.cells = read_cell_keys(reader);
-  record.program = text_at(reader, "program");
-  record.command = text_at(reader, "command");
-  record.started = text_at(reader, "started");
-  record.confinement = text_at(reader, "confinement");
-  record.plugins = plugins_at(reader);
-  record.build = object_at(reader, "build");
-  record.request = object_at(reader, "request");
-  record.settings = object_at(reader, "settings");
-  for (const auto& row : record.settings.items()) object_at(reader.at("settings"), row.key().c_str());
-  reader.at("machine").at("processor").string();
-  record.machine = reader.at("machine").json();
-  if (reader.has("answers")) record.answers = reader.at("answers").json();
-  if (reader.has("about")) record.about = reader.at("about").json();
-  if (reader.has("claims")) {
-    record.claims = reader.at("claims").json();
-    read_suite_claims(record.claims, file + ": /claims");
-  }
-  record.shard = shard_at(reader, record.cells.size());
-  if (reader.has("merged")) record.merged = reader.at("merged").json();
-  return record;
+static void fields(RunRecord::Plugin& plugin, Fields& field) {
+  field("kind", plugin.kind);
+  field("id", plugin.id);
+  field("version", plugin.version);
+  field("sha256", plugin.sha256);
+  field("asks", plugin.asks, when(!plugin.asks.empty()));
 }
 
-Json to_json(const RunRecord& record) {
-  Json plugins = Json::array();
-  for (const RunRecord::Plugin& plugin : record.plugins) {
-    plugins.push_back(
-        {{"kind", plugin.kind}, {"id", plugin.id}, {"version", plugin.version}, {"sha256", plugin.sha256}});
-    if (!plugin.asks.empty()) plugins.back()["asks"] = plugin.asks;
-  }
-  Json json{{"suite", record.suite},     {"preset", record.preset},     {"smoke", record.smoke},
-            {"request", record.request}, {"settings", record.settings}, {"cells", record.cells},
-            {"plugins", plugins},        {"build", record.build},       {"version", record.version},
-            {"program", record.program}, {"command", record.command},   {"confinement", record.confinement},
-            {"answers", record.answers}, {"started", record.started},   {"machine", record.machine}};
-  if (!record.about.is_null()) json["about"] = record.about;
-  if (!record.claims.is_null()) json["claims"] = record.claims;
-  if (record.shard)
-    json["shard"] = {{"index", record.shard->index}, {"count", record.shard->count}, {"cells", record.shard->cells}};
-  if (!record.merged.is_null()) json["merged"] = record.merged;
-  return json;
+static void fields(RunRecord::Shard& shard, Fields& field) {
+  field("count", shard.count, within(1, 1 << 30));
+  field("index", shard.index, within(1, field.reading() ? shard.count : 1 << 30));
+  field("cells", shard.cells);
 }
+
+// What may lack was not said by an older version.
+void fields(RunRecord& record, Fields& field) {
+  const JsonReader* const reader = field.reading();
+  field("version", record.version);
+  if (const std::string old = series(record.version); reader && (old == "0.1" || old == "0.2"))
+    throw InputError(fmt::format("{}: of lgabench {}, whose runs {} does not read", reader->file(), record.version,
+                                 LGABENCH_VERSION));
+  field("suite", record.suite);
+  field("preset", record.preset, may_lack());
+  field("smoke", record.smoke);
+  field("cells", record.cells);
+  if (reader) read_cell_keys(*reader);
+  field("program", record.program, may_lack());
+  field("command", record.command, may_lack());
+  field("started", record.started, may_lack());
+  field("confinement", record.confinement, may_lack());
+  field("plugins", record.plugins, may_lack());
+  field("build", record.build, object(may_lack()));
+  field("request", record.request, object(may_lack()));
+  field("settings", record.settings, object(may_lack()));
+  for (const auto& row : record.settings.items())
+    if (reader && !row.value().is_object()) reader->at("settings").at(row.key()).fail("an object");
+  field("machine", record.machine);
+  if (reader) reader->at("machine").at("processor").string();
+  field("answers", record.answers, may_lack());
+  field("about", record.about, when(!record.about.is_null()));
+  field("claims", record.claims, when(!record.claims.is_null()));
+  if (reader && reader->has("claims")) read_suite_claims(record.claims, reader->file() + ": /claims");
+  if (reader && reader->has("shard") && reader->at("shard").has("cells"))
+    reader->at("shard").at("cells").integer(0, static_cast<long long>(record.cells.size()));
+  field("shard", record.shard, or_null(false, when(record.shard.has_value())));
+  field("merged", record.merged, when(!record.merged.is_null()));
+}
+
+RunRecord read_run_record(const Json& json, const std::string& file) {
+  return value_of<RunRecord>(JsonReader(json, file), false);
+}
+
+Json to_json(const RunRecord& record) { return json_of(record); }
 
 void write_run_record(const fs::path& run, const RunRecord& record) {
   write_file(record_file(run), to_json(record).dump(1) + '\n');

@@ -1,19 +1,25 @@
 #include <lgabench/record/test_scenes.hpp>
 
+#include <array>
+
+#include <lgabench/record/fields.hpp>
+
 namespace lgabench {
 namespace {
 
-constexpr const char *of_all = "shared", *of_each = "per_seed";
+constexpr std::array words{"shared", "per_seed"};  // of TestScenes
 
 }  // namespace
 
-void to_json(Json& json, TestScenes scenes) { json = scenes == TestScenes::per_seed ? of_each : of_all; }
+void to_json(Json& json, TestScenes scenes) { json = words.at(static_cast<std::size_t>(scenes)); }
 
-TestScenes read_test_scenes(const JsonReader& reader) {
-  const std::string word = reader.string();
-  if (word != of_all && word != of_each) reader.fail("shared or per_seed");
-  return word == of_each ? TestScenes::per_seed : TestScenes::shared;
+void visit(const Slot& slot, TestScenes& scenes, const Form&) {
+  std::string word = words.at(static_cast<std::size_t>(scenes));
+  visit(slot, word, one_of(words));
+  scenes = word == words[0] ? TestScenes::shared : TestScenes::per_seed;
 }
+
+TestScenes read_test_scenes(const JsonReader& reader) { return value_of<TestScenes>(reader); }
 
 std::uint64_t scene_set(TestScenes scenes, std::uint64_t training_seed) {
   return scenes == TestScenes::per_seed ? training_seed : 0;

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include <lgabench/record/fields.hpp>
+
 namespace lgabench {
 namespace {
 
@@ -19,6 +21,11 @@ TrainOn read_train_on(const JsonReader& reader) {
   if (level.json() == any) return {axis, {}};
   if (!level.json().is_number_integer()) level.fail("a level, or \"any\"");
   return {axis, static_cast<int>(level.integer(1, std::numeric_limits<int>::max()))};
+}
+
+void visit(const Slot& slot, TrainOn& through, const Form&) {
+  if (slot.read) through = read_train_on(*slot.read);
+  if (slot.write) *slot.write = to_json(through);
 }
 
 }  // namespace lgabench
