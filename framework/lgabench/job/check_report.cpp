@@ -1,23 +1,32 @@
 #include <lgabench/job/check_report.hpp>
 
+#include <algorithm>
+#include <array>
+
+#include <lgabench/core/fields.hpp>
+
 namespace lgabench {
 
-std::string to_string(Finding::State state) {
-  return state == Finding::State::ok ? "ok" : state == Finding::State::note ? "note" : "problem";
+namespace {
+
+constexpr std::array states{"ok", "note", "problem"};  // of Finding::State
+
+}  // namespace
+
+std::string to_string(Finding::State state) { return states.at(static_cast<std::size_t>(state)); }
+
+static void fields(Finding& finding, Fields& field) {
+  std::string state = states.at(static_cast<std::size_t>(finding.state));
+  field("check", finding.check);
+  field("detail", finding.detail);
+  field("fix", finding.fix);
+  field("state", state, one_of(states));
+  finding.state = static_cast<Finding::State>(std::find(states.begin(), states.end(), state) - states.begin());
 }
 
-Json to_json(const Finding& f) {
-  return {{"check", f.check}, {"state", to_string(f.state)}, {"detail", f.detail}, {"fix", f.fix}};
-}
-
-Finding read_finding(const JsonReader& reader) {
-  Finding finding{Finding::State::ok, reader.at("check").string(), reader.at("detail").string(),
-                  reader.at("fix").string()};
-  const std::string state = reader.at("state").string();
-  for (const auto known : {Finding::State::ok, Finding::State::note, Finding::State::problem})
-    if (to_string(known) == state) finding.state = known;
-  if (to_string(finding.state) != state) reader.at("state").fail("ok, note or problem");
-  return finding;
+static void fields(CheckReport& report, Fields& field) {
+  field("findings", report.findings);
+  field("hashes", report.hashes);
 }
 
 void CheckReport::ok(const std::string& check, const std::string& detail) {
@@ -34,18 +43,10 @@ void CheckReport::judge(const std::string& check, const std::string& fault, cons
   fault.empty() ? ok(check, detail) : problem(check, fault, fix);
 }
 
-Json to_json(const CheckReport& report) {
-  Json findings = Json::array();
-  for (const Finding& finding : report.findings) findings.push_back(to_json(finding));
-  return {{"findings", findings}, {"hashes", report.hashes}};
-}
+Json to_json(const CheckReport& report) { return json_of(report); }
 
 CheckReport read_check_report(const Json& json, const std::string& file) {
-  const JsonReader reader(json, file);
-  CheckReport report;
-  for (const JsonReader& finding : reader.at("findings").elements()) report.findings.push_back(read_finding(finding));
-  report.hashes = reader.at("hashes").json();
-  return report;
+  return value_of<CheckReport>(JsonReader(json, file), false);
 }
 
 }  // namespace lgabench

@@ -16,9 +16,6 @@ struct Finding {
   std::string fix;     // of a note or a problem: what to do about it
 };
 std::string to_string(Finding::State state);
-Json to_json(const Finding& finding);
-/// @throws InputError for what to_json() did not write.
-Finding read_finding(const JsonReader& reader);
 
 /// All of one process's findings, and hashes of what the plugin computed there: two processes must agree on them.
 struct CheckReport {
@@ -32,6 +29,7 @@ struct CheckReport {
   void judge(const std::string& check, const std::string& fault, const std::string& detail, const std::string& fix);
 };
 Json to_json(const CheckReport& report);
+/// @throws InputError for what to_json() did not write.
 CheckReport read_check_report(const Json& json, const std::string& file);
 
 }  // namespace lgabench
