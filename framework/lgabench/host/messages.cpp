@@ -5,6 +5,58 @@
 #include <array>
 #include <cstring>
 
+#include <lgabench/core/fields.hpp>
+
+namespace lgabench {
+
+static void fields(SecondRole& second, Fields& field) {
+  field("id", second.id);
+  field("phrase", second.phrase);
+}
+
+static void fields(Command& command, Fields& field) {
+  field("utterance", command.utterance);
+  field("task", command.task);
+  field("second", command.second, when(command.second.has_value()));
+}
+
+static void fields(Needs& needs, Fields& field) {
+  static constexpr std::array targets{"selected", "truth"};  // of Needs::Targets
+  constexpr int most = 100;                                  // rollouts a demonstration: each is played by the oracle
+  std::string word = targets.at(needs.targets == Needs::Targets::truth ? 1 : 0);
+  field("targets", word, one_of(targets));
+  needs.targets = word == targets[1] ? Needs::Targets::truth : Needs::Targets::selected;
+  field("noisy_per_clean", needs.noisy_per_clean, within(0, most));
+  field("noise_max", needs.noise_max);
+  field("revise", needs.revise, may_lack());
+  field("shadows", needs.shadows, may_lack());
+}
+
+static void fields(Placed& placed, Fields& field) {
+  field("id", placed.instance.id);
+  field("object_type", placed.instance.object_type);
+  field("texture", placed.instance.texture);
+  field("pixels", placed.instance.pixels, within(0, 1 << 30));
+  field("row", placed.row);
+  field("column", placed.column);
+}
+
+static void fields(SelectionCost& cost, Fields& field) {
+  field("lm_queries", cost.lm_queries, within(0, 1 << 30));
+  field("lm_tokens", cost.lm_tokens, within(0, 1LL << 60));
+  field("lm_seconds", cost.lm_seconds);
+  field("human_seconds", cost.human_seconds);
+}
+
+static void fields(ProcessState& state, Fields& field) {
+  field("threads", state.threads);
+  field("descriptors", state.descriptors);
+  field("heap_bytes", state.heap_bytes, within(0, 1LL << 60));
+  field("flushed", state.flushed);
+}
+
+}  // namespace lgabench
+
 namespace lgabench::protocol {
 namespace {
 
@@ -18,20 +70,8 @@ FeatureSet read_set(const JsonReader& reader) {
 
 }  // namespace
 
-Json to_json(const Command& command) {
-  Json json{{"utterance", command.utterance}, {"task", command.task}};
-  if (command.second) json["second"] = {{"id", command.second->id}, {"phrase", command.second->phrase}};
-  return json;
-}
-
-Command read_command(const JsonReader& reader) {
-  Command command{reader.at("utterance").string(), reader.at("task").string(), std::nullopt};
-  if (reader.has("second")) {
-    const JsonReader second = reader.at("second");
-    command.second = SecondRole{second.at("id").string(), second.at("phrase").string()};
-  }
-  return command;
-}
+Json to_json(const Command& command) { return json_of(command); }
+Command read_command(const JsonReader& reader) { return value_of<Command>(reader, false); }
 
 Json to_json(const FeatureSpace& space) {
   return {{"id", space.id}, {"object_types", space.object_types}, {"textures", space.textures}};
@@ -72,26 +112,8 @@ Instruction read_instruction(const JsonReader& reader) {
   return {reader.at("utterance").string(), read_selection(reader.at("selection"))};
 }
 
-Json to_json(const Needs& needs) {
-  return {{"targets", needs.targets == Needs::Targets::truth ? "truth" : "selected"},
-          {"noisy_per_clean", needs.noisy_per_clean},
-          {"noise_max", needs.noise_max},
-          {"revise", needs.revise},
-          {"shadows", needs.shadows}};
-}
-
-Needs read_needs(const JsonReader& reader) {
-  constexpr int most = 100;  // rollouts a demonstration: each is played by the oracle
-  Needs needs;
-  const std::string targets = reader.at("targets").string();
-  if (targets != "truth" && targets != "selected") reader.at("targets").fail("selected or truth");
-  if (targets == "truth") needs.targets = Needs::Targets::truth;
-  needs.noisy_per_clean = static_cast<int>(reader.at("noisy_per_clean").integer(0, most));
-  needs.noise_max = reader.at("noise_max").number();
-  if (reader.has("revise")) needs.revise = reader.at("revise").boolean();
-  if (reader.has("shadows")) needs.shadows = reader.at("shadows").boolean();
-  return needs;
-}
+Json to_json(const Needs& needs) { return json_of(needs); }
+Needs read_needs(const JsonReader& reader) { return value_of<Needs>(reader, false); }
 
 Json to_json(const Question& question, const Command& command) {
   if (question.about == About::second && !command.second)
@@ -117,27 +139,8 @@ Json to_json(const std::vector<Hypothesis>& hypotheses) {
   return all;
 }
 
-Json to_json(const std::vector<Placed>& objects) {
-  Json all = Json::array();
-  for (const auto& [instance, row, column] : objects)
-    all.push_back({{"id", instance.id},
-                   {"object_type", instance.object_type},
-                   {"texture", instance.texture},
-                   {"pixels", instance.pixels},
-                   {"row", row},
-                   {"column", column}});
-  return all;
-}
-
-std::vector<Placed> read_placed(const JsonReader& reader) {
-  std::vector<Placed> all;
-  for (const JsonReader& one : reader.elements())
-    all.push_back({{static_cast<std::uint8_t>(one.at("id").integer(0, 255)), one.at("object_type").string(),
-                    one.at("texture").string(), static_cast<int>(one.at("pixels").integer(0, 1 << 30))},
-                   one.at("row").number(),
-                   one.at("column").number()});
-  return all;
-}
+Json to_json(const std::vector<Placed>& objects) { return json_of(objects); }
+std::vector<Placed> read_placed(const JsonReader& reader) { return value_of<std::vector<Placed>>(reader, false); }
 
 std::vector<Hypothesis> read_hypotheses(const JsonReader& reader) {
   std::vector<Hypothesis> all;
@@ -146,34 +149,11 @@ std::vector<Hypothesis> read_hypotheses(const JsonReader& reader) {
   return all;
 }
 
-Json to_json(const SelectionCost& cost) {
-  return {{"lm_queries", cost.lm_queries},
-          {"lm_tokens", cost.lm_tokens},
-          {"lm_seconds", cost.lm_seconds},
-          {"human_seconds", cost.human_seconds}};
-}
+Json to_json(const SelectionCost& cost) { return json_of(cost); }
+SelectionCost read_cost(const JsonReader& reader) { return value_of<SelectionCost>(reader, false); }
 
-SelectionCost read_cost(const JsonReader& reader) {
-  constexpr long long most = 1LL << 60;
-  return {static_cast<int>(reader.at("lm_queries").integer(0, 1 << 30)), reader.at("lm_tokens").integer(0, most),
-          reader.at("lm_seconds").number(), reader.at("human_seconds").number()};
-}
-
-Json to_json(const ProcessState& state) {
-  return {{"threads", state.threads},
-          {"descriptors", state.descriptors},
-          {"heap_bytes", state.heap_bytes},
-          {"flushed", state.flushed}};
-}
-
-ProcessState read_state(const JsonReader& reader) {
-  ProcessState state;
-  state.threads = reader.at("threads").strings();
-  state.descriptors = reader.at("descriptors").strings();
-  state.heap_bytes = reader.at("heap_bytes").integer(0, 1LL << 60);
-  state.flushed = reader.at("flushed").boolean();
-  return state;
-}
+Json to_json(const ProcessState& state) { return json_of(state); }
+ProcessState read_state(const JsonReader& reader) { return value_of<ProcessState>(reader, false); }
 
 Frame log_frame(const std::vector<LogEntry>& entries) {
   Frame frame{{{"type", "log"}, {"epochs", Json::array()}, {"steps", Json::array()}}};
