@@ -147,7 +147,10 @@ class PersonRuleMethod final : public CloningMethod {
       };
       return revised;
     }
-    Belief belief(drawn::rules_of(*grammar_, words_of(command).types));
+    std::vector<drawn::PersonRule> rules = drawn::rules_of(*grammar_, words_of(command).types);
+    if (learns == "bayes_hint")
+      if (const auto* const hint = drawn::hint_in(*grammar_, command.utterance)) rules = drawn::left_by(*hint, rules);
+    Belief belief(std::move(rules));
     for (const auto& [scene, one] : shown) belief.took(scene, one);
     ask(command, shown, belief, services);
     revised.target = drawn::meaning_of(belief.rules()[belief.likeliest()], grammar_->space);
@@ -229,11 +232,12 @@ class PersonRuleMethod final : public CloningMethod {
 LGABENCH_METHOD_ASKING(
     "accept", "person_rule", "0.1", "What a person wants and does not say, by the grammar of persons", PersonRuleMethod,
     "{"
-    R"("learns": {"default": "bayes", "values": ["words", "common_looks", "bayes"], )"
-    R"("help": "words: nothing; common_looks: what all taken objects share; bayes: the rules' probabilities", )"
+    R"("learns": {"default": "bayes", "values": ["words", "common_looks", "bayes", "bayes_hint"], )"
+    R"("help": "words: nothing; common_looks: what all taken objects share; bayes: the rules' probabilities; )"
+    R"(bayes_hint: those of the rules that the command's hint leaves", )"
     R"("source": "ours"}, "choice": {"default": "selection", "values": ["selection", "scene"], )"
     R"("help": "one Selection, of the likeliest rule; scene: what is likeliest taken, or shares most, in each scene", )"
-    R"("source": "ours", "needs": {"scene": {"learns": ["common_looks", "bayes"]}}}, )"
+    R"("source": "ours", "needs": {"scene": {"learns": ["common_looks", "bayes", "bayes_hint"]}}}, )"
     R"("questions": {"default": 0, "min": 0, "help": "to each person at most; which of these counts three", )"
     R"("source": "ours"}, "asks": {"default": "best", "values": ["best", "random"], )"
     R"("help": "what is expected to tell most for its price, or anything", "source": "ours"}, )" LGABENCH_CLONING_OPTIONS

@@ -103,14 +103,18 @@ def unseen_seed():
 PERSONS = {"person_rule+learns=words": "the words", "person_rule+learns=common_looks": "what taken objects share, one Selection",
            "person_rule+choice=scene+learns=common_looks": "the same, scene by scene", "person_rule": "exact Bayes, one Selection",
            "person_rule+choice=scene": "the same, scene by scene (the ceiling)", "person_rule+asks=random": "Bayes, random questions",
-           "plga": "plga, the grammar alone", "plga_active": "plga_active, likewise"}
+           "person_rule+learns=bayes_hint": "Bayes of the rules that the hint leaves, one Selection",
+           "person_rule+choice=scene+learns=bayes_hint": "the same, scene by scene",
+           "lga": "a model's answer to words and hint: types and textures", "lga+meaning=structured": "likewise, and a place",
+           "plga+unlisted=0": "a model's list alone", "plga": "the list, and 0.3 for the grammar",
+           "plga+unlisted=1": "plga, the grammar alone", "plga_active+unlisted=1": "plga_active, likewise"}
 
 
-def persons():
+def persons(run="persons"):
     """Success by demonstrations, and what each row loses to exact Bayes with as many questions."""
     found = {}
-    for one in RUNS["persons"]["regret"]:
-        row = re.sub(r"\+(questions|unlisted)=[^+]*", "", one["method"])
+    for one in RUNS[run]["regret"]:
+        row = re.sub(r"\+questions=[^+]*", "", one["method"])
         found.setdefault((one["questions"], row), {})[one["demonstrations"]] = one
     ns = sorted({n for by_n in found.values() for n in by_n})
     lines = []
@@ -118,7 +122,7 @@ def persons():
         last = by_n[ns[-1]]
         lines.append([PERSONS[row], str(questions), *(f"{number(by_n[n]['success'])} [{interval(by_n[n]['success_interval'])}]" for n in ns),
                       "" if row == "person_rule" else f"{last['regret']:+.2f} [{interval(last['regret_interval'])}]"])
-    return commands("persons") + table(["row", "questions", *(f"{n} demonstration{'' if n == 1 else 's'}" for n in ns), f"regret at {ns[-1]}"], lines)
+    return commands(run) + table(["row", "questions", *(f"{n} demonstration{'' if n == 1 else 's'}" for n in ns), f"regret at {ns[-1]}"], lines)
 
 
 PICTURED = {"human": "the truth", "lga": "LGA", "taken_features": "most demonstrated names", "gcbc_seg": "GCBC-SEG",
@@ -231,7 +235,10 @@ def read_off(name):
 
 def rewritten(page):
     """The page's text with each marked table made anew."""
-    tables = {"instruction": instruction, "fidelity": fidelity, "unseen_seed": unseen_seed, "persons": persons, "pictures": pictures, "reading": reading, "speed": lambda: (MEASURED / "speed.txt").read_text(), "perturbations_read": perturbations_read, "rivals": lambda: rivals(page.stem),
+    tables = {"instruction": instruction, "fidelity": fidelity, "unseen_seed": unseen_seed, "persons": persons,
+              **{f"persons_{run}": lambda run=run: persons(f"persons_{run}") for run in ("lists", "hints", "policy")}, "pictures": pictures,
+              "reading": reading, "speed": lambda: (MEASURED / "speed.txt").read_text(), "perturbations_read": perturbations_read,
+              "rivals": lambda: rivals(page.stem),
               "leaks": lambda: leaks(page.stem)}
     made = lambda name: tables[name]() if name in tables else read_off(name)
     return re.sub(r"(<!-- measured:(\w+) -->\n).*?(<!-- /measured -->)", lambda found: f"{found[1]}\n{made(found[2])}\n{found[3]}",

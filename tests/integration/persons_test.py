@@ -1,9 +1,12 @@
 """Persons who do not say all that they want: the exact row again in Python, a method that asks, and what is refused."""
 import collections
 import json
+import re
+import shutil
+import subprocess
 import unittest
 
-from case import BUILD, Case
+from case import BUILD, Case, command_line
 from python_test import HAS_NUMPY, PYTHON
 
 SHARE = BUILD / "share" / "lgabench"
@@ -141,9 +144,12 @@ class Persons(Case):
         return found
 
     def test_the_shipped_persons_are_those_of_their_seeds(self):
-        for seed, count in ((1, 25), (20261127, 200)):
-            self.call("commands", "--persons", str(count), "--seed", str(seed), "--out", str(seed))
-            for file in (self.dir / str(seed)).glob("persons_*_*.json"):
+        for seed, count, *more in ((1, 25), (20261127, 200), (20261127, 200, "--hints")):
+            out = f"{seed}{''.join(more)}"
+            self.call("commands", "--persons", str(count), "--seed", str(seed), *more, "--out", out)
+            files = list((self.dir / out).glob("persons_*_??.json"))
+            self.assertEqual(len(files), count // 25)
+            for file in files:
                 self.assertEqual(file.read_text(), (SHARE / "scenarios" / file.name).read_text(), file.name)
 
     @unittest.skipUnless(HAS_NUMPY, f"{PYTHON} has no NumPy")
@@ -195,12 +201,73 @@ class Persons(Case):
         self.assertGreater(success["person_rule", 3], success["person_rule", 0])
         self.assertIn("What rows lose to exact Bayes", (self.dir / "out/report.md").read_text())
 
+    def test_a_hint_leaves_fewer_rules(self):
+        """And a person with a rule that their hint excludes is refused."""
+        self.call("run", "persons", "--preset", "hints", "--scenarios", "persons_hints_20261127_01", "--methods",
+                  "person_rule,person_rule+learns=bayes_hint", "--demos", "0", "--episodes", "25", *RUN, "--out", "out")
+        found = {cell["method"]["name"]: json.loads((self.dir / "out/cells" / key / "selection.json").read_text())["commands"]
+                 for key, (cell, _) in self.cells("out").items()}
+        grammar = json.loads((SHARE / "persons" / "persons.json").read_text())
+        without = {}
+        for one, hinted in zip(found["person_rule"], found["person_rule+learns=bayes_hint"]):
+            words, hint = re.fullmatch(r"Bring person \d+ (.*?)\. (.*)", one["utterance"]).groups()
+            target = json.dumps(one["selection"]["target"])
+            self.assertEqual(without.setdefault(words, target), target, "a row that reads no hint")
+            leaves, = [each for each in grammar["hints"] if each["says"] == hint and words in each.get("words", [words])]
+            selected = hinted["selection"]["target"]
+            which = (selected.get("which") or {}).get("rule")
+            types = (selected.get("sets") or [selected])[0]["object_types"]
+            self.assertTrue(which in leaves.get("places", [which]), (hint, selected))
+            self.assertTrue(sorted(types) in map(sorted, leaves.get("types", [types])), (hint, selected))
+        good = json.loads((SHARE / "scenarios" / "persons_hints_20261127_01.json").read_text())
+        good["id"] = "bad"
+        typed = [(one, each) for one in good["commands"] for each in grammar["hints"] if "types" in each
+                 and one["utterance"].endswith(". " + each["says"])]
+        command, hint = typed[0]
+        truth = command["truth"]["target"]
+        truth = truth.get("sets", [truth])[0]
+        words, = [one for one in grammar["words"] if f" {one['a']}. " in command["utterance"]]
+        truth["object_types"] = [next(one for one in words["types"] if [one] not in hint["types"])]
+        (self.dir / "bad.json").write_text(json.dumps(good))
+        error = self.call("check-scenario", "bad.json", expect=2).stderr
+        self.assertIn("/truth: expected a rule that the command's hint leaves", error)
+
+    def test_a_row_of_the_board_meets_other_persons(self):
+        """Truths of the published persons, as answers, are of no use with others, whose words are the same."""
+        shutil.copytree(SHARE, self.dir / "data", ignore=shutil.ignore_patterns("encoder"))
+        self.environment["LGABENCH_DATA"] = str(self.dir / "data")
+        suite = json.loads((SHARE / "suites" / "persons.json").read_text())
+        suite.update(id="few", scenarios=["persons_1_01"], presets={"board": {"demonstrations": [1], "episodes": 25, "scene_seed": 7}})
+        (self.dir / "data/suites/few.json").write_text(json.dumps(suite))
+        persons = json.loads((SHARE / "scenarios/persons_1_01.json").read_text())["commands"]
+        (self.dir / "truth.json").write_text(json.dumps({"model": "a copy", "space": "household", "answers": [
+            {"command": one["utterance"], "target": (one["truth"]["target"].get("sets") or [one["truth"]["target"]])[0],
+             "structured": one["truth"]["target"]} for one in persons]}))
+        (self.dir / "me.json").write_text(json.dumps(
+            {"authors": ["A. Author"], "license": "MIT", "by": "A. Author", "source": {"file": "a.json", "sha256": "0" * 64}}))
+        for method, *answers in (("lga+meaning=structured", "--answers", "truth.json"), ("person_rule+questions=1", "--answers", "none")):
+            self.call("run", "few", "--preset", "board", "--methods", method, *answers, "--no-reference", "--out", method)
+            self.call("leaderboard", "add", method, "--entry", "me.json", "--board", "board")
+        self.assertEqual(self.call("leaderboard", "verify", "--by", "B. Reader", "--board", "board").stdout.count("agrees"), 2)
+        copied, learned = (next((self.dir / "board/entries" / name).glob("*/*")) for name in ("lga", "person_rule"))
+        outcomes = json.loads((copied / "cells.jsonl").read_text())["outcomes"]["test"]
+        self.assertEqual(set(outcomes), {"."}, "the copy knows them all")
+        said = self.call("leaderboard", "verify", copied.parent.name, "--fresh", "--by", "B. Reader", "--board", "board", expect=1).stdout
+        self.assertIn("DIFFERS", said)
+        verify = command_line("leaderboard", "verify", learned.parent.name, "--fresh", "--by", "B. Reader", "--board", "board")
+        subprocess.run(verify, capture_output=True, env=self.environment, cwd=self.dir, timeout=300)  # whether it agrees is chance
+        for entry in copied, learned:
+            line = json.loads((entry / "verifications.jsonl").read_text().splitlines()[-1])
+            self.assertEqual((line["kind"], line["persons"]), ("fresh", 25))
+            self.assert_as_schema("verifications", line)
+
     def test_hostile_persons_are_refused(self):
         good = json.loads((SHARE / "scenarios" / "persons_1_01.json").read_text())
         place = {"object_types": ["apple", "banana"], "textures": ["red"]}
         for change, said in (({"utterance": "Bring me a dragon."}, "/commands/0/utterance: expected words of the grammar"),
                              ({"truth": {"target": place}}, "/commands/0/truth: expected a rule of the grammar of persons"),
-                             ({"truth": {"target": {"object_types": [], "textures": "ALL"}}}, "/commands/0/truth: expected")):
+                             ({"truth": {"target": {"object_types": [], "textures": "ALL"}}}, "/commands/0/truth: expected"),
+                             ({"utterance": "Bring person 1 a fruit. It is raining."}, "/commands/0/utterance: expected words of the grammar")):
             bad = json.loads(json.dumps(good))
             bad["id"] = "bad"
             bad["commands"][0].update(change)

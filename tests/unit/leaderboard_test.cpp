@@ -287,6 +287,20 @@ TEST(LeaderboardEntry, FreshScenesArePooled) {
   EXPECT_EQ(why_not_ranked(lucky), "") << "one line in ten, by chance";
 }
 
+TEST(LeaderboardEntry, OtherPersonsDifferMoreThanOtherScenesOfTheSame) {
+  Entry entry = made_entry(small_setting(), "a", .5);
+  for (PlayedCell& cell : entry.cells)
+    for (auto& arm : cell.outcomes)
+      for (std::size_t i = 0; i < arm.second.size(); ++i) arm.second[i] = i % 4 < 2 ? '.' : 'a';
+  Json line = fresh_of(entry, {});
+  const double scenes = fresh_estimates(entry, {&line}).back().high;
+  line["persons"] = 4;  // two always win, two always lose: of a mean of four the variance is (4/3 / 4) / 4, not 1/4 / 40
+  const double persons = fresh_estimates(entry, {&line}).back().high;
+  EXPECT_NEAR(persons / scenes, std::sqrt((1. / 3 / 4) / (.25 / 42)), .05);
+  line["persons"] = 40;  // of a scene each
+  EXPECT_NEAR(fresh_estimates(entry, {&line}).back().high / scenes, 1, .05);
+}
+
 TEST(LeaderboardEntry, AFreshLineIsWhatItsSuccessesSay) {
   const TemporaryDirectory board;
   const Entry entry = made_entry(small_setting(), "a", .5);
@@ -566,6 +580,25 @@ TEST(Standings, NamesReadAreRankedWhereTheTrackSaysSo) {
   all = by_id(track);
   EXPECT_EQ(all.at(read.id()).rank, 1);
   EXPECT_EQ(all.at(plain.id()).rank, 2);
+}
+
+TEST(Standings, RowsOfPersonsAreRankedOnceTheyMetOthers) {
+  Entry asked = replayed_entry(small_setting(), "a", .9);
+  asked.phi["heart"][0][0]["selection"]["provenance"] = "simulated_edit";
+  for (const Json& line : asked.verifications) asked.vouched.insert(line_hash(line));
+  const auto why = [&asked](const Track& track) { return standings({&asked}, track).front().not_ranked; };
+  Track track{Track::abstraction, {"hard"}};
+  EXPECT_EQ(why(track), "the truth stands in for people");
+  track.persons = true;
+  EXPECT_EQ(why(track), "not yet played with other persons");
+  add_vouched(asked, fresh_of(asked, {}));
+  EXPECT_EQ(why(track), "");
+  asked.identity.answers = FileAnswers{std::string(64, 'd')};
+  for (const Json& line : asked.verifications) asked.vouched.insert(line_hash(line));
+  EXPECT_EQ(why(track), as_submitted);
+  TemporaryDirectory board;
+  write_file(board.path / "tracks.json", R"({"open": ["s-l"], "persons": ["s-l"]})");
+  EXPECT_TRUE(read_tracks(board.path).at("s-l").persons);
 }
 
 TEST(Standings, EpisodesOfAFailedCellAreLost) {

@@ -203,6 +203,41 @@ TEST(Persons, ABeliefIsBayesRule) {
   EXPECT_NEAR(belief.probabilities()[0], 19. / 21, 1e-12);
 }
 
+TEST(Persons, AHintLeavesRulesThatHaveItsParts) {
+  Json json = person_grammar_json();
+  json["hints"] = Json::parse(R"([{"says": "It is soup.", "words": ["a piece of cutlery"], "types": [["spoon"]]},
+                                  {"says": "No stripes.", "looks": ["not striped", "dotted"]},
+                                  {"says": "A side.", "places": ["leftmost", "rightmost"]}])");
+  const PersonGrammar mine = read_person_grammar(json, grammar().space, "mine.json");
+  EXPECT_EQ(hint_in(mine, "Bring person 1 a fruit."), nullptr);
+  EXPECT_EQ(words_in(mine, "Bring person 1 a fruit. It is soup."), nullptr) << "a hint of other words";
+  EXPECT_EQ(words_in(mine, "Bring person 1 a piece of cutlery. It is soup.")->a, "a piece of cutlery");
+  EXPECT_EQ(hint_in(mine, "Bring person 1 a fruit. No stripes."), &mine.hints[1]);
+  const auto rules = rules_of(mine, mine.words[0].types);
+  double prior = 0;
+  const auto left = left_by(mine.hints[1], rules);
+  for (const PersonRule& rule : left) {
+    const Meaning meaning = meaning_of(rule, mine.space);
+    const auto& textures = meaning.sets.front().textures;
+    const bool striped = std::find(textures.begin(), textures.end(), "red and blue stripe") != textures.end();
+    const bool plain = std::find(textures.begin(), textures.end(), "red") != textures.end();
+    EXPECT_FALSE(striped);
+    EXPECT_EQ(plain, textures.size() > 30) << "dotted or not striped";
+    prior += rule.prior;
+  }
+  EXPECT_NEAR(prior, 1, 1e-9);
+  const auto sides = left_by(mine.hints[2], rules);
+  EXPECT_TRUE(std::all_of(sides.begin(), sides.end(), [](const PersonRule& rule) {
+    return rule.place == Which::Rule::leftmost || rule.place == Which::Rule::rightmost;
+  }));
+  const auto persons = draw_persons(mine, practice, 0, 40, true);
+  for (const Person& person : persons) {
+    ASSERT_NE(words_in(mine, person.utterance), nullptr) << person.utterance;
+    EXPECT_TRUE(leaves(*hint_in(mine, person.utterance), person.rule)) << person.utterance;
+  }
+  EXPECT_EQ(draw_persons(mine, practice, 10, 1, true).front().utterance, persons[10].utterance);
+}
+
 TEST(Persons, AHostileGrammarIsRefused) {
   const auto refused = [](const std::string& place, const Json& value) {
     Json json = person_grammar_json();
@@ -224,6 +259,14 @@ TEST(Persons, AHostileGrammarIsRefused) {
   EXPECT_PRED2(says, refused("/looks/0/textures", {"no such *"}), "/looks/0/textures: expected some textures");
   EXPECT_PRED2(says, refused("/looks/0/textures", {"*"}), "/looks/0/textures: expected some textures");
   EXPECT_PRED2(says, refused("/more", 1), "mine.json: ");
+  const auto hint = [&refused](const char* member, const Json& value) {
+    return refused("/hints", Json::array({{{"says", "A hint."}, {member, value}}}));
+  };
+  EXPECT_PRED2(says, hint("looks", {"plaid"}), "/hints/0/looks/0: expected a look of the grammar, or not one");
+  EXPECT_PRED2(says, hint("places", {"left_of"}), "/hints/0/places/0: expected a place of the grammar");
+  EXPECT_PRED2(says, hint("types", {{"dragon"}}), "/hints/0/types/0: expected object types of the feature space");
+  EXPECT_PRED2(says, hint("types", {{"apple"}}), "/hints/0: expected parts that some rules of \"a packaged drink\"");
+  EXPECT_PRED2(says, hint("words", {"a dragon"}), "/hints/0/words: expected words of the grammar");
 }
 
 }  // namespace

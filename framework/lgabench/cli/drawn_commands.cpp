@@ -17,6 +17,7 @@ struct DrawArguments {
   drawn::DrawRequest request;
   fs::path out, lexicon;
   int persons = 0;
+  bool hints = false;
 };
 
 // In scenarios of so many.
@@ -24,15 +25,16 @@ void draw_persons(const DrawArguments& a) {
   constexpr int in_scenario = 25;
   const FeatureSpace space = load_feature_space(drawn::person_grammar_json().at("space"));
   const drawn::PersonGrammar grammar = drawn::person_grammar(space);
-  const std::string suite = fmt::format("persons_{}", a.request.seed);
+  const std::string suite = fmt::format("persons_{}{}", a.hints ? "hints_" : "", a.request.seed);
   std::vector<std::string> ids;
   for (int first = 0; first < a.persons; first += in_scenario) {
     ids.push_back(fmt::format("{}_{:02}", suite, ids.size() + 1));
-    const auto persons = drawn::draw_persons(grammar, a.request.seed, first, std::min(in_scenario, a.persons - first));
+    const auto persons =
+        drawn::draw_persons(grammar, a.request.seed, first, std::min(in_scenario, a.persons - first), a.hints);
     write_file(a.out / (ids.back() + ".json"), drawn::readable(drawn::scenario_of(ids.back(), persons, space)));
   }
   const fs::path file = a.out / (suite + ".json");
-  write_file(file, drawn::readable(drawn::suite_of_persons(suite, ids)));
+  write_file(file, drawn::readable(drawn::suite_of_persons(suite, ids, a.hints)));
   to_stdout("{}\n\nlgabench run {} --answers none\n", file.string(), file.string());
 }
 
@@ -72,6 +74,7 @@ void add_drawn_commands(CLI::App& app, int& exit) {
       ->excludes("--n")
       ->excludes("--parts")
       ->excludes("--lexicon");
+  verb.option("--hints", a->hints, "Persons say a hint after their words")->needs("--persons");
   verb.option("--out DIR", a->out, "The directory for the scenarios and their suite, drawn_SEED.json", required);
   verb->footer(
       "docs/own-scenarios.md says what is drawn, docs/formats/lexicon.schema.json how a lexicon is written.\n"

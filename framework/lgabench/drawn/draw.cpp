@@ -166,7 +166,7 @@ Json scenario_of(const std::string& id, const std::vector<Person>& persons, cons
   return json;
 }
 
-Json suite_of_persons(const std::string& id, const std::vector<std::string>& scenarios) {
+Json suite_of_persons(const std::string& id, const std::vector<std::string>& scenarios, bool hinted) {
   Json suite = Json::parse(R"({
     "note": "Persons with rules that they do not say, drawn from a grammar. What their words hold stands in every scene; what they took, and what they say when asked, tells the rule.",
     "about": {
@@ -194,7 +194,21 @@ Json suite_of_persons(const std::string& id, const std::vector<std::string>& sce
   suite["id"] = id;
   suite["scenarios"] = scenarios;
   suite["presets"]["smoke"]["scenarios"] = {scenarios.front()};
+  if (hinted)
+    suite["methods"] = {"person_rule", "person_rule+learns=bayes_hint", "person_rule+choice=scene",
+                        "person_rule+choice=scene+learns=bayes_hint"};
   return suite;
+}
+
+Json with_other_persons(const Json& scenario, const FeatureSpace& space, std::uint64_t seed, int first) {
+  if (!scenario.value("persons", false)) return scenario;
+  const PersonGrammar grammar = person_grammar(space);
+  const bool hinted = hint_in(grammar, scenario.at("commands").at(0).at("utterance")) != nullptr;
+  const auto count = static_cast<int>(scenario.at("commands").size());
+  Json other = scenario;
+  other["commands"] =
+      scenario_of(scenario.at("id"), draw_persons(grammar, seed, first, count, hinted), space).at("commands");
+  return other;
 }
 
 std::string readable(const Json& json) { return readable(json, 0, 0) + "\n"; }

@@ -32,7 +32,9 @@ Json suite_of(const std::string& id, const DrawRequest& request, const std::vect
 
 /// Persons as a scenario, with a command of each; and a suite of such scenarios.
 Json scenario_of(const std::string& id, const std::vector<Person>& persons, const FeatureSpace& space);
-Json suite_of_persons(const std::string& id, const std::vector<std::string>& scenarios);
+Json suite_of_persons(const std::string& id, const std::vector<std::string>& scenarios, bool hinted);
+/// A scenario of as many persons of another seed, from number `first` on; one without persons as it is.
+Json with_other_persons(const Json& scenario, const FeatureSpace& space, std::uint64_t seed, int first);
 
 /// JSON as people read it: what fits into a line stands in one.
 std::string readable(const Json& json);

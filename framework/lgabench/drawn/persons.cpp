@@ -3,11 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-
-#include <lgabench/drawn/lexicon.hpp>
 
 namespace lgabench::drawn {
 namespace {
@@ -16,42 +13,20 @@ using Place = Which::Rule;
 using Names = std::vector<std::string>;
 constexpr double column_margin = 20, distance_margin = 25;  // pixels
 
-Names fitting(const JsonReader& patterns, const Names& space) {
-  Names found;
-  for (const std::string& name : space)
-    for (const JsonReader& pattern : patterns.elements())
-      if (fits(pattern.string(), name) && std::find(found.begin(), found.end(), name) == found.end())
-        found.push_back(name);
-  return found;
-}
-
-// Shares by name, which add up to 1.
-std::vector<double> read_shares(const JsonReader& reader, const Names& names) {
-  reader.only(names);
-  std::vector<double> shares;
-  double sum = 0;
-  for (const std::string& name : names) {
-    shares.push_back(reader.at(name).number());
-    if (!(shares.back() >= 0)) reader.at(name).fail("a share, 0 or more");
-    sum += shares.back();
-  }
-  if (!(std::abs(sum - 1) < 1e-9)) reader.fail(fmt::format("shares that add up to 1, not {}", sum));
-  return shares;
-}
-
-std::bitset<PersonRule::most> numbers_of(const Names& names, const Names& space) {
-  std::bitset<PersonRule::most> bits;
-  for (const std::string& name : names)
-    if (const auto at = std::find(space.begin(), space.end(), name); at != space.end())
-      bits.set(static_cast<std::size_t>(at - space.begin()));
-  return bits;
-}
-
 Names names_of(const std::bitset<PersonRule::most>& bits, const Names& space) {
   Names names;
   for (std::size_t i = 0; i < space.size(); ++i)
     if (bits[i]) names.push_back(space[i]);
   return names;
+}
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+template <class Part>
+bool is_any_of(const std::vector<Part>& parts, const Part& one) {
+  return std::find(parts.begin(), parts.end(), one) != parts.end();
 }
 
 bool belongs(const PersonRule& rule, const Thing& one) { return rule.types[one.type] && rule.textures[one.texture]; }
@@ -73,54 +48,12 @@ std::size_t any_of(const std::bitset<PersonRule::most>& bits, RandomStream& rand
 
 }  // namespace
 
-PersonGrammar read_person_grammar(const Json& json, const FeatureSpace& space, const std::string& file) {
-  constexpr std::size_t fewest_types = 3;
-  if (std::max(space.object_types.size(), space.textures.size()) > PersonRule::most)
-    throw InputError(fmt::format("{}: expected a feature space of at most {} types and textures", file,
-                                 static_cast<std::size_t>(PersonRule::most)));
-  const JsonReader reader(json, file);
-  reader.only({"note", "space", "words", "looks", "prior"});
-  PersonGrammar grammar;
-  grammar.space = space;
-  const bool own_space = reader.at("space").string() == space.id;
-  for (const JsonReader& entry : reader.at("words").elements()) {
-    entry.only({"a", "types"});
-    Names types;
-    for (const JsonReader& name : entry.at("types").elements()) {
-      const bool known =
-          std::find(space.object_types.begin(), space.object_types.end(), name.string()) != space.object_types.end();
-      if (!known && own_space) name.fail("an object type of the feature space: a rule would fit no object");
-      if (known) types.push_back(name.string());
-    }
-    if (types.size() < fewest_types && own_space) entry.at("types").fail("three object types at least");
-    if (types.size() >= fewest_types) grammar.words.push_back({entry.at("a").string(), std::move(types)});
-  }
-  for (const JsonReader& entry : reader.at("looks").elements()) {
-    entry.only({"is", "textures"});
-    Names textures = fitting(entry.at("textures"), space.textures);
-    if (own_space && (textures.empty() || textures.size() == space.textures.size()))
-      entry.at("textures").fail("some textures of the feature space and not all: a rule would fit no object");
-    if (!textures.empty()) grammar.looks.push_back({entry.at("is").string(), std::move(textures)});
-  }
-  if (reader.at("words").json().empty()) reader.at("words").fail("at least one entry");
-  if (reader.at("looks").json().empty()) reader.at("looks").fail("at least one entry");
-  const JsonReader prior = reader.at("prior");
-  prior.only({"types", "looks", "places"});
-  const auto types = read_shares(prior.at("types"), {"all", "one", "two"});
-  const auto looks = read_shares(prior.at("looks"), {"any", "is", "is_not"});
-  const std::array<Place, 4> rules{Place::leftmost, Place::rightmost, Place::nearest_to, Place::farthest_from};
-  Names names{"any"};
-  for (const Place rule : rules) names.push_back(to_string(rule));
-  const auto places = read_shares(prior.at("places"), names);
-  grammar.all = types[0], grammar.one = types[1], grammar.two = types[2];
-  grammar.any = looks[0], grammar.is = looks[1], grammar.is_not = looks[2];
-  grammar.anywhere = places[0];
-  for (std::size_t i = 0; i < rules.size(); ++i) grammar.places.emplace_back(rules[i], places[i + 1]);
-  return grammar;
-}
-
-PersonGrammar person_grammar(const FeatureSpace& space) {
-  return read_person_grammar(person_grammar_json(), space, "persons.json");
+std::bitset<PersonRule::most> numbers_of(const Names& names, const Names& space) {
+  std::bitset<PersonRule::most> bits;
+  for (const std::string& name : names)
+    if (const auto at = std::find(space.begin(), space.end(), name); at != space.end())
+      bits.set(static_cast<std::size_t>(at - space.begin()));
+  return bits;
 }
 
 std::vector<PersonRule> rules_of(const PersonGrammar& grammar, const Names& names) {
@@ -166,12 +99,33 @@ std::vector<PersonRule> rules_of(const PersonGrammar& grammar, const Names& name
 }
 
 const PersonGrammar::Words* words_in(const PersonGrammar& grammar, const std::string& utterance) {
-  for (const PersonGrammar::Words& words : grammar.words) {
-    const std::string end = " " + words.a + ".";
-    if (utterance.size() > end.size() && utterance.compare(utterance.size() - end.size(), end.size(), end) == 0)
-      return &words;
-  }
+  const PersonGrammar::Hint* const hint = hint_in(grammar, utterance);
+  for (const PersonGrammar::Words& words : grammar.words)
+    if (ends_with(utterance, " " + words.a + "." + (hint ? " " + hint->says : ""))) return &words;
   return nullptr;
+}
+
+const PersonGrammar::Hint* hint_in(const PersonGrammar& grammar, const std::string& utterance) {
+  for (const PersonGrammar::Hint& hint : grammar.hints)
+    for (const std::string& words : hint.words)
+      if (ends_with(utterance, " " + words + ". " + hint.says)) return &hint;
+  return nullptr;
+}
+
+bool leaves(const PersonGrammar::Hint& hint, const PersonRule& rule) {
+  return (hint.types.empty() || is_any_of(hint.types, rule.types)) &&
+         (hint.textures.empty() || is_any_of(hint.textures, rule.textures)) &&
+         (hint.places.empty() || (rule.place && is_any_of(hint.places, *rule.place)));
+}
+
+std::vector<PersonRule> left_by(const PersonGrammar::Hint& hint, std::vector<PersonRule> rules) {
+  rules.erase(
+      std::remove_if(rules.begin(), rules.end(), [&hint](const PersonRule& rule) { return !leaves(hint, rule); }),
+      rules.end());
+  double sum = 0;
+  for (const PersonRule& rule : rules) sum += rule.prior;
+  for (PersonRule& rule : rules) rule.prior /= sum;
+  return rules;
 }
 
 Meaning meaning_of(const PersonRule& rule, const FeatureSpace& space) {
@@ -302,18 +256,26 @@ std::optional<NaturalScene> draw_natural(const PersonGrammar& grammar, const Per
   return std::nullopt;
 }
 
-std::vector<Person> draw_persons(const PersonGrammar& grammar, std::uint64_t seed, int first, int count) {
+std::vector<Person> draw_persons(const PersonGrammar& grammar, std::uint64_t seed, int first, int count, bool hinted) {
   std::vector<Person> persons;
   std::vector<std::vector<PersonRule>> rules;
   for (const PersonGrammar::Words& words : grammar.words) rules.push_back(rules_of(grammar, words.types));
   for (int k = first; k < first + count; ++k) {
-    RandomStream random(fmt::format("persons/{}/{}", seed, k));
+    RandomStream random(fmt::format("persons{}/{}/{}", hinted ? "_hints" : "", seed, k));
     const std::size_t w = static_cast<std::size_t>(k) % grammar.words.size();
-    const auto scene = draw_rivals(
-        rules[w], nullptr, plain_goal, random,
-        [&random](std::vector<Thing>& things) { return place_plainly(things, random); },
-        std::numeric_limits<int>::max());
-    persons.push_back({fmt::format("Bring person {} {}.", k + 1, grammar.words[w].a), scene->rules.front()});
+    Person person{fmt::format("Bring person {} {}.", k + 1, grammar.words[w].a), {}};
+    Names says;
+    do {
+      const auto scene = draw_rivals(
+          rules[w], nullptr, plain_goal, random,
+          [&random](std::vector<Thing>& things) { return place_plainly(things, random); },
+          std::numeric_limits<int>::max());
+      person.rule = scene->rules.front();
+      for (const PersonGrammar::Hint& hint : grammar.hints)
+        if (is_any_of(hint.words, grammar.words[w].a) && leaves(hint, person.rule)) says.push_back(hint.says);
+    } while (hinted && says.empty());
+    if (hinted) person.utterance += " " + says[random.below(static_cast<std::uint32_t>(says.size()))];
+    persons.push_back(std::move(person));
   }
   return persons;
 }

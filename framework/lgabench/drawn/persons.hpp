@@ -35,9 +35,17 @@ struct PersonGrammar {
     std::string is;  // "striped"
     std::vector<std::string> textures;
   };
+  /// What a person may say of their rule: it leaves rules that have one of these parts.
+  struct Hint {
+    std::string says;                // "I am having soup."
+    std::vector<std::string> words;  // beside which it is said
+    std::vector<std::bitset<PersonRule::most>> types, textures;
+    std::vector<Which::Rule> places;
+  };
   FeatureSpace space;
   std::vector<Words> words;
   std::vector<Look> looks;
+  std::vector<Hint> hints;
   double all = 0, one = 0, two = 0;    // of types
   double any = 0, is = 0, is_not = 0;  // of looks
   double anywhere = 0;                 // no place; the others' shares:
@@ -45,18 +53,25 @@ struct PersonGrammar {
 };
 
 /// A grammar's file (persons.json). @throws InputError with file and place, also for names that fit nothing, words with
-/// fewer than three types, and shares of a prior that do not add up to 1.
+/// fewer than three types, shares of a prior that do not add up to 1, and hints that leave no rule of their words.
 PersonGrammar read_person_grammar(const Json& json, const FeatureSpace& space, const std::string& file);
 /// The shipped one, which is part of this library: a method's process reads no files.
 const Json& person_grammar_json();
 /// The shipped one, in that space, of which other names are left out.
 PersonGrammar person_grammar(const FeatureSpace& space);
 
+/// Numbers in the space of those of the names that it has.
+std::bitset<PersonRule::most> numbers_of(const std::vector<std::string>& names, const std::vector<std::string>& space);
 /// All rules of words that hold these types, with their priors.
 std::vector<PersonRule> rules_of(const PersonGrammar& grammar, const std::vector<std::string>& types);
-/// "bring me a fruit" in the grammar: the types of the first words that the utterance ends with; nothing where none
-/// are.
+/// "Bring me a fruit." in the grammar: the first words that the utterance ends with, or has before a hint; nothing
+/// where none are.
 const PersonGrammar::Words* words_in(const PersonGrammar& grammar, const std::string& utterance);
+/// The hint that the utterance ends with; nothing where it has none.
+const PersonGrammar::Hint* hint_in(const PersonGrammar& grammar, const std::string& utterance);
+bool leaves(const PersonGrammar::Hint& hint, const PersonRule& rule);
+/// Those that the hint leaves, whose priors add up to 1 again.
+std::vector<PersonRule> left_by(const PersonGrammar::Hint& hint, std::vector<PersonRule> rules);
 /// The rule as a scenario or a Selection has it, and back; nothing for what is not such a rule.
 Meaning meaning_of(const PersonRule& rule, const FeatureSpace& space);
 std::optional<PersonRule> rule_of(const Meaning& meaning, const FeatureSpace& space);
@@ -116,7 +131,9 @@ struct Person {
   PersonRule rule;
 };
 /// The seed's persons number `first` to `first + count - 1`, words in turn. Each is the first of the rules in a scene
-/// of rivals, so that in such scenes no rule is likelier the person's than its rivals are.
-std::vector<Person> draw_persons(const PersonGrammar& grammar, std::uint64_t seed, int first, int count);
+/// of rivals, so that in such scenes no rule is likelier the person's than its rivals are. Hinted: each has a rule that
+/// a hint leaves, and says one of these hints after the words.
+std::vector<Person> draw_persons(const PersonGrammar& grammar, std::uint64_t seed, int first, int count,
+                                 bool hinted = false);
 
 }  // namespace lgabench::drawn

@@ -9,6 +9,7 @@
 
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/drawn/draw.hpp>
 #include <lgabench/harness/recompute.hpp>
 #include <lgabench/leaderboard/answer_score.hpp>
 #include <lgabench/leaderboard/played_cell.hpp>
@@ -146,8 +147,23 @@ Json replayed(const Entry& entry, const std::vector<std::size_t>& chosen, const 
           {"passed", report::verdict_of(cells) != report::Reproduction::differs}};
 }
 
+// How many persons a cell's commands are of, who are now others; 0 where they are nobody's. The cells are all scenarios
+// of one place each, in order.
+int draw_other_persons(std::vector<Cell>& cells, std::uint64_t seed) {
+  int before = 0, of_cell = 0;
+  for (Cell& cell : cells) {
+    if (!cell.scenario->value("persons", false)) return 0;
+    const FeatureSpace space = load_feature_space(cell.scenario->at("feature_space"));
+    cell.scenario = std::make_shared<const Json>(drawn::with_other_persons(*cell.scenario, space, seed, before));
+    of_cell = static_cast<int>(cell.scenario->at("commands").size());
+    before += of_cell;
+  }
+  return of_cell;
+}
+
 // A line of fresh scenes, without who made it.
-Json played_fresh(const Entry& entry, const std::vector<std::size_t>& chosen, const std::vector<PlayedCell>& now) {
+Json played_fresh(const Entry& entry, const std::vector<std::size_t>& chosen, const std::vector<PlayedCell>& now,
+                  int persons) {
   Json keys = Json::array(), successes = Json::array();
   int episodes = 0;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -158,6 +174,7 @@ Json played_fresh(const Entry& entry, const std::vector<std::size_t>& chosen, co
   }
   Json line{{"kind", "fresh"}, {"cells", keys},        {"bit_identical", 0},
             {"flips", 0},      {"episodes", episodes}, {"successes", successes}};
+  if (persons > 0) line["persons"] = persons;
   const std::vector<FreshEstimate> estimates = fresh_estimates(entry, {&line});
   const FreshEstimate& mean = estimates.back();
   line.update({{"passed", std::none_of(estimates.begin(), estimates.end(), [](const auto& e) { return e.differs(); })},
@@ -208,13 +225,14 @@ std::optional<Json> verification(const fs::path& board, const Entry& entry, cons
   const std::vector<Cell> all = cells_of(entry, installed);
   std::vector<Cell> cells;
   for (const std::size_t i : chosen) cells.push_back(all[i]);
+  const int persons = options.fresh ? draw_other_persons(cells, installed.design.scene_seed) : 0;
   const RunPlan plan = plan_of(board, entry, std::move(cells), options);
   const std::optional<Recomputed> recomputed = recompute(plan, catalogue);
   if (!recomputed) return std::nullopt;
   const RunRecord& run = recomputed->record;
   Entry scratch = entry;  // whose Selections grow
   const std::vector<PlayedCell> now = lines_of(plan, *recomputed, scratch);
-  Json line = options.fresh ? played_fresh(entry, chosen, now) : replayed(entry, chosen, now, run.processor());
+  Json line = options.fresh ? played_fresh(entry, chosen, now, persons) : replayed(entry, chosen, now, run.processor());
   line.update({{"nonce", nonce},
                {"by", options.by},
                {"when", fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)))},

@@ -167,6 +167,7 @@ void add_ranks(std::vector<Standing>& all, const report::SharedResamples& resamp
 
 // In the abstraction track: truths are public, so that nothing but a method on given answers can be ranked.
 std::string why_not_in_track(const Entry& entry, const Track& track) {
+  if (track.persons) return "";
   if (track.answers.empty()) return "no ranks: the truths are public";
   std::set<std::string> asked = provenances_of(entry);
   asked.erase("none");
@@ -184,7 +185,7 @@ std::set<std::string> provenances_of(const Entry& entry) {
   return all;
 }
 
-std::string why_not_ranked(const Entry& entry) {
+std::string why_not_ranked(const Entry& entry, const Track& track) {
   if (entry.identity.row.is_reference()) return "reference";
   if (entry.identity.row.asks == "truth" || entry.identity.row.asks == "network")
     return "asks for the " + entry.identity.row.asks;
@@ -192,8 +193,10 @@ std::string why_not_ranked(const Entry& entry) {
   if (!entry.was_replayed()) return "not yet replayed";
   if (entry.replay_differed()) return "a replay differed";
   const std::set<std::string> provenances = provenances_of(entry);
-  if (provenances.count("truth") + provenances.count("simulated_edit") > 0) return "the truth stands in for people";
+  if (provenances.count("truth") > 0 || (!track.persons && provenances.count("simulated_edit") > 0))
+    return "the truth stands in for people";
   if (entry.has_answers_as_submitted()) return as_submitted;
+  if (track.persons && entry.fresh() == 0) return "not yet played with other persons";
   return "";
 }
 
@@ -212,7 +215,7 @@ std::vector<Standing> standings(const std::vector<const Entry*>& table, const Tr
       continue;
     Standing& standing = all.emplace_back();
     standing.entry = entry;
-    standing.not_ranked = why_not_ranked(*entry);
+    standing.not_ranked = why_not_ranked(*entry, track);
     if (standing.not_ranked.empty() && track.kind == Track::abstraction)
       standing.not_ranked = why_not_in_track(*entry, track);
     if (standing.not_ranked.empty() && !entry->identity.reading.none() && !track.names_read)

@@ -50,7 +50,7 @@ inline constexpr const char* names_were_read = "names read from pictures";
 std::set<std::string> provenances_of(const Entry& entry);
 
 /// Why an entry has no place among the ranked: "" for one that has.
-std::string why_not_ranked(const Entry& entry);
+std::string why_not_ranked(const Entry& entry, const Track& track = {});
 
 /// The option of that name, of the method that acts: "regression" is the paper's network; "" where a method or a
 /// reference row has none.

@@ -15,7 +15,7 @@ Tracks read_tracks(const fs::path& board) {
   if (!fs::exists(fs::symlink_status(file))) return {};
   const Json json = read_json(file, Links::refused);
   const JsonReader reader(json, file.string());
-  reader.only({"abstraction", "frozen", "open", "names_read"});
+  reader.only({"abstraction", "frozen", "open", "names_read", "persons"});
   Tracks tracks;
   const auto add = [&tracks](const JsonReader& place, const std::string& preset, Track track) {
     if (!tracks.emplace(preset, std::move(track)).second) place.fail("each preset in one track");
@@ -40,6 +40,8 @@ Tracks read_tracks(const fs::path& board) {
     for (const JsonReader& preset : reader.at("open").elements()) add(preset, preset.string(), {Track::open, {}});
   if (reader.has("names_read"))
     for (const std::string& preset : reader.at("names_read").strings()) tracks[preset].names_read = true;
+  if (reader.has("persons"))
+    for (const std::string& preset : reader.at("persons").strings()) tracks[preset].persons = true;
   return tracks;
 }
 
@@ -72,6 +74,10 @@ std::vector<Ranking> rankings_of(const Track& track) {
 
 std::string words_of(Ranking ranking, const Track* track) {
   if (ranking == Ranking::answers_only) {
+    if (track && track->persons)
+      return "What a person did not say: rows differ in how they learn it, from demonstrations and from as many "
+             "questions as they name. The published persons prove nothing: a row has a rank once it was as good with "
+             "persons that were drawn after it was entered.";
     const std::string ranks =
         !track ? "The truth of these commands is public, so answers to them prove nothing: only methods that share one "
                  "frozen file of answers have ranks, in the suites in which there is one."

@@ -18,6 +18,7 @@ struct Track {
   std::vector<std::string> arms{};  // of the abstraction track: where an abstraction decides
   std::string answers{};            // likewise: whose frozen answers the rows share that are ranked; "": nobody is
   bool names_read = false;          // of any: whether rows whose names were read from pictures are ranked
+  bool persons = false;             // of any: rows may ask simulated people, and are ranked once they met other persons
 };
 
 /// By preset, as "clutter-abstraction".

@@ -60,6 +60,7 @@ void expect_fresh(const JsonReader& line, const Entry& entry) {
   expect_chosen(line, entry, chosen);
   const std::vector<JsonReader> cells = line.at("successes").elements();
   if (cells.size() != chosen.size()) line.at("successes").fail("an object for each cell");
+  if (line.has("persons")) line.at("persons").integer(2, entry.setting.episodes);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::vector<std::string>& arms = entry.setting.scenario(entry.cells[chosen[i]].place.scenario).arms;
     cells[i].only(arms);
@@ -91,6 +92,18 @@ std::string said(const Entry& entry, const Json& line) {
   return tier <= entry.tier() ? "" : to_string(tier);
 }
 
+// Of the share of successes of one out of so many persons, who have their episodes in turn; no less than their scenes
+// alone make it.
+double variance_of_persons(const std::string& letters, int persons, double of_an_episode) {
+  std::vector<double> shares(static_cast<std::size_t>(persons), 0);
+  const double scenes = static_cast<double>(letters.size()) / persons;
+  for (std::size_t i = 0; i < letters.size(); ++i) shares[i % shares.size()] += is_success(letters[i]) / scenes;
+  const double mean = successes(letters) / static_cast<double>(letters.size());
+  double sum = 0;
+  for (const double share : shares) sum += (share - mean) * (share - mean);
+  return std::max(sum / (persons - 1), of_an_episode / scenes);
+}
+
 }  // namespace
 
 report::Reproduction replay_verdict(const Entry& entry, const Json& line) {
@@ -112,7 +125,7 @@ void expect_verification(const JsonReader& line, const Entry& entry) {
   line.only({"kind",     "nonce",       "cells",      "bit_identical",  "flips",         "only_recorded",
              "episodes", "passed",      "by",         "when",           "program",       "build",
              "machine",  "confinement", "scene_seed", "demonstrations", "training_seed", "difference",
-             "low",      "high",        "successes"});
+             "low",      "high",        "successes",  "persons"});
   const std::string kind = line.at("kind").string(), nonce = line.at("nonce").string();
   if (kind != "replay" && kind != "fresh") line.at("kind").fail("replay or fresh");
   if (nonce.size() != 32 || nonce.find_first_not_of("0123456789abcdef") != std::string::npos)
@@ -148,13 +161,16 @@ std::vector<std::size_t> fresh_cells(const Entry& entry, const std::string& nonc
 
 std::vector<FreshEstimate> fresh_estimates(const Entry& entry, const std::vector<const Json*>& lines) {
   std::map<std::string, std::map<std::string, std::pair<int, int>>> played;  // cell -> arm -> successes, episodes
-  for (const Json* line : lines)
+  int persons = 0;
+  for (const Json* line : lines) {
+    persons = line->value("persons", 0);
     for (std::size_t i = 0; i < line->at("cells").size(); ++i)
       for (const auto& [arm, successes] : line->at("successes").at(i).items()) {
         auto& [won, episodes] = played[line->at("cells").at(i)][arm];
         won += successes.get<int>();
         episodes += entry.setting.episodes;
       }
+  }
   std::map<std::string, int> cells_of_arm;
   for (const auto& cell : played)
     for (const auto& arm : cell.second) ++cells_of_arm[arm.first];
@@ -168,8 +184,11 @@ std::vector<FreshEstimate> fresh_estimates(const Entry& entry, const std::vector
       const auto share = [](double won, double of) { return std::pair(won / of, (won + 1) / (of + 2)); };
       const auto before = share(successes(letters), static_cast<double>(letters.size()));
       const auto now = share(counts.first, counts.second);
-      const double variance = before.second * (1 - before.second) / (static_cast<double>(letters.size()) + 2) +
-                              now.second * (1 - now.second) / (counts.second + 2.);
+      double variance = before.second * (1 - before.second) / (static_cast<double>(letters.size()) + 2) +
+                        now.second * (1 - now.second) / (counts.second + 2.);
+      if (persons > 0)
+        variance = variance_of_persons(letters, persons, before.second * (1 - before.second)) *
+                   (1. / persons + static_cast<double>(entry.setting.episodes) / counts.second / persons);
       sums[arm].add(1. / cells_of_arm.at(arm), now.first - before.first, variance);
       mean.add(1. / static_cast<double>(played.size() * fresh->second.size()), now.first - before.first, variance);
     }
