@@ -252,6 +252,10 @@ class Persons(Case):
         copied, learned = (next((self.dir / "board/entries" / name).glob("*/*")) for name in ("lga", "person_rule"))
         outcomes = json.loads((copied / "cells.jsonl").read_text())["outcomes"]["test"]
         self.assertEqual(set(outcomes), {"."}, "the copy knows them all")
+        (self.dir / "board/tracks.json").write_text(json.dumps({"abstraction": {"few-board": ["test"]}, "persons": ["few-board"]}))
+        self.call("leaderboard", "vouch", learned.parent.name, "1", "--board", "board")
+        self.call("leaderboard", "build", "--board", "board")
+        self.assertIn("not yet played with other persons", (self.dir / "board/README.md").read_text())
         said = self.call("leaderboard", "verify", copied.parent.name, "--fresh", "--by", "B. Reader", "--board", "board", expect=1).stdout
         self.assertIn("DIFFERS", said)
         verify = command_line("leaderboard", "verify", learned.parent.name, "--fresh", "--by", "B. Reader", "--board", "board")
