@@ -106,21 +106,21 @@ PERSONS = {"person_rule+learns=words": "the words", "person_rule+learns=common_l
            "person_rule+learns=bayes_hint": "Bayes of the rules that the hint leaves, one Selection",
            "person_rule+choice=scene+learns=bayes_hint": "the same, scene by scene",
            "lga": "a model's answer to words and hint: types and textures", "lga+meaning=structured": "likewise, and a place",
-           "plga+unlisted=0": "a model's list alone", "plga": "the list, and 0.3 for the grammar",
-           "plga+unlisted=1": "plga, the grammar alone", "plga_active+unlisted=1": "plga_active, likewise"}
+           "plga": "plga, the grammar alone", "plga_active": "plga_active, likewise"}
+LISTED = {"plga+unlisted=0.0": "a model's list alone", "plga": "the list, and 0.3 of the prior for the grammar"}
 
 
 def persons(run="persons"):
     """Success by demonstrations, and what each row loses to exact Bayes with as many questions."""
-    found = {}
+    found, names = {}, {**PERSONS, **(LISTED if run == "persons_lists" else {})}
     for one in RUNS[run]["regret"]:
         row = re.sub(r"\+questions=[^+]*", "", one["method"])
         found.setdefault((one["questions"], row), {})[one["demonstrations"]] = one
     ns = sorted({n for by_n in found.values() for n in by_n})
     lines = []
-    for (questions, row), by_n in sorted(found.items(), key=lambda one: (one[0][0], list(PERSONS).index(one[0][1]))):
+    for (questions, row), by_n in sorted(found.items(), key=lambda one: (one[0][0], list(names).index(one[0][1]))):
         last = by_n[ns[-1]]
-        lines.append([PERSONS[row], str(questions), *(f"{number(by_n[n]['success'])} [{interval(by_n[n]['success_interval'])}]" for n in ns),
+        lines.append([names[row], str(questions), *(f"{number(by_n[n]['success'])} [{interval(by_n[n]['success_interval'])}]" for n in ns),
                       "" if row == "person_rule" else f"{last['regret']:+.2f} [{interval(last['regret_interval'])}]"])
     return commands(run) + table(["row", "questions", *(f"{n} demonstration{'' if n == 1 else 's'}" for n in ns), f"regret at {ns[-1]}"], lines)
 
