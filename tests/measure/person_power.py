@@ -55,6 +55,8 @@ def main():
             found.append((*told_apart(differences, stream), one[0], other[0], len(differences)))
     for power, needed, one, other, persons in sorted(found):
         print(f"{power:.2f}, {needed:.0f} persons for .80: {one} and {other}")
+    if not found:
+        raise SystemExit("expected two rows with as many questions")
     powers = [one[0] for one in found]
     print(f"{len(found)} pairs of rows, {found[0][4]} persons: {min(powers):.2f} to {max(powers):.2f}, median {statistics.median(powers):.2f}; "
           f"{sum(power >= .8 for power in powers)} of them .80 or more")
