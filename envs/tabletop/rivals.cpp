@@ -98,7 +98,8 @@ std::shared_ptr<const Persons> read_persons(const Scenario& scenario, const Json
   for (std::size_t i = 0; i < commands.size(); ++i) {
     const ScenarioCommand& command = scenario.commands[i];
     const auto* const words = drawn::words_in(persons->grammar, command.utterance);
-    if (!words) commands[i].at("utterance").fail("words of the grammar of persons, and nothing after them but one of its hints");
+    if (!words)
+      commands[i].at("utterance").fail("words of the grammar of persons, and nothing after them but one of its hints");
     if (command.truth.target.empty()) commands[i].at("truth").fail("a rule that fits an object");
     auto& rules = persons->rules[words];
     if (rules.empty()) rules = drawn::rules_of(persons->grammar, words->types);

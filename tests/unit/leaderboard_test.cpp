@@ -294,7 +294,7 @@ TEST(LeaderboardEntry, OtherPersonsDifferMoreThanOtherScenesOfTheSame) {
       for (std::size_t i = 0; i < arm.second.size(); ++i) arm.second[i] = i % 4 < 2 ? '.' : 'a';
   Json line = fresh_of(entry, {});
   const double scenes = fresh_estimates(entry, {&line}).back().high;
-  line["persons"] = 4;  // two always win, two always lose: of a mean of four the variance is (4/3 / 4) / 4, not 1/4 / 40
+  line["persons"] = 4;  // two always win, two always lose: their mean has the variance 1/3 / 4
   const double persons = fresh_estimates(entry, {&line}).back().high;
   EXPECT_NEAR(persons / scenes, std::sqrt((1. / 3 / 4) / (.25 / 42)), .05);
   line["persons"] = 40;  // of a scene each
