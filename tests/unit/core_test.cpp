@@ -256,7 +256,7 @@ TEST(Scenario, AllShippedOnesAreRead) {
   int pick_and_place = 0;
   for (const std::string& id : scenario_ids()) pick_and_place += load_scenario(id).task == "pick_and_place";
   EXPECT_EQ(pick_and_place,
-            200);  // drawn has 100, words 56, q1 9 and as many paraphrased, persons 9, clutter 6, many_commands 8, q2
+            208);  // drawn has 100, words 56, q1 9 and as many paraphrased, persons 17, clutter 6, many_commands 8, q2
                    // two, ...
   const Scenario s = load_scenario("heart");
   EXPECT_EQ(s.commands[0].truth.target.product().object_types, std::vector<std::string>{"heart"});

@@ -119,7 +119,7 @@ TEST(Board, APageBeginsWithTheBestRowOfEachMethod) {
   EXPECT_SAYS(page.substr(more, page.find("</tr>", more) - more), "method of a, loss squared");
   EXPECT_SAYS(index, "loss squared") << "the first page has every row of every suite";
   for (const char* words :
-       {"not yet replayed", "claimed by", "answers as submitted", "does not say that they are equal"})
+       {"not yet replayed", "claimed by", "answers as submitted", "does not mean that they perform equally"})
     EXPECT_SAYS(index, words);
 }
 
