@@ -26,7 +26,8 @@ TEST(LeaderboardPublished, EveryEntryAndCellHasTheNameThatItHad) {
     const Entry entry = read_entry(board, directory);
     EXPECT_EQ(entry.place(), directory);
     const Competitor& row = entry.identity.row;
-    if (!row.is_reference()) {
+    // A later version of a method may have other options; its older entries keep their name.
+    if (!row.is_reference() && catalogue.find("method", row.id).version == row.version) {
       EXPECT_EQ(resolve_options(catalogue.find("method", row.id), row.options), row.options) << directory;
     }
 
@@ -34,7 +35,8 @@ TEST(LeaderboardPublished, EveryEntryAndCellHasTheNameThatItHad) {
     if (presets.count(preset) == 0) presets.emplace(preset, installed_setting(preset.first, preset.second));
     const Installed& installed = presets.at(preset);
     EXPECT_EQ(hash(installed.setting), entry.identity.preset_sha256) << directory;
-    const std::vector<Cell> cells = cells_of_row(installed, row, entry.identity.engine, entry.identity.answers);
+    const std::vector<Cell> cells =
+        cells_of_row(installed, row, entry.identity.engine, entry.identity.answers, entry.identity.reading);
     ASSERT_EQ(cells.size(), entry.cells.size()) << directory;
     for (std::size_t i = 0; i < cells.size(); i += 10) {
       Cell cell = cells[i];
