@@ -80,9 +80,9 @@ void visit(const Slot& slot, Json& any, const Form& form);
 long long visit_integer(const Slot& slot, long long value, long long highest, const Form& form);
 template <class T>
 std::enable_if_t<std::is_integral_v<T>> visit(const Slot& slot, T& value, const Form& form) {
-  constexpr auto highest = sizeof(T) == sizeof(INT64_MAX) ? INT64_MAX : std::numeric_limits<T>::max();
-  const long long number =
-      visit_integer(slot, static_cast<long long>(value), std::min<long long>(highest, form.highest), form);
+  using Limits = std::numeric_limits<T>;
+  constexpr long long highest = Limits::digits < 63 ? static_cast<long long>(Limits::max()) : INT64_MAX;
+  const long long number = visit_integer(slot, static_cast<long long>(value), std::min(highest, form.highest), form);
   if (slot.read) value = static_cast<T>(number);
 }
 template <class T>
@@ -91,7 +91,7 @@ auto visit(const Slot& slot, T& value, const Form&) -> decltype(fields(value, st
 template <class T>
 void visit(const Slot& slot, std::optional<T>& value, const Form& form) {
   T described{};
-  if (slot.read) value.emplace();
+  if (slot.read) value = T{};
   if (value || slot.schema) visit(slot, value ? *value : described, form);
 }
 
