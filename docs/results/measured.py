@@ -136,19 +136,24 @@ def at_levels(found, row, axis):
     return f"{number(found[row, f'{axis}_2'])} {number(found[row, f'{axis}_4'])}"
 
 
-def axes_of(found):
-    return list(dict.fromkeys(arm[:-2] for _, arm in found if arm.endswith("_4") and not arm.startswith(("near", "others"))))
+def axes_of(found, suite):
+    """Axes that were played up to level 4; a level's arm is none of the suite's own."""
+    return list(dict.fromkeys(arm[:-2] for _, arm in found if arm.endswith("_4") and arm not in ABOUT[suite]["arms"]))
+
+
+def read_by(method, reader):
+    """The row's name in a run's summary."""
+    return method if reader == "simulator" else f"{method}+names={reader}"
 
 
 def pictures():
     """Success by where a mask's names come from, in each arm, and at levels 2 and 4 of each axis."""
     runs = "pictures_truth", "pictures_language", "pictures_looks"
     found = {(row["method"], row["arm"]): row["success"] for run in runs for row in RUNS[run]["rows"]}
-    titles = ABOUT["pictures"]["arm_titles"]
-    lines = [[words, by if method in READ else "", *(number(found[row, arm]) for arm in titles), *(at_levels(found, row, axis) for axis in axes_of(found))]
-             for method, words in PICTURED.items() for reader, by in READERS.items()
-             if ((row := method if reader == "simulator" else f"{method}+names={reader}"), "near_4") in found]
-    return commands(*runs) + table(["what is kept", "names from", *titles.values(), *(f"`{axis}` 2, 4" for axis in axes_of(found))], lines)
+    titles, axes = ABOUT["pictures"]["arm_titles"], axes_of(found, "pictures")
+    lines = [[words, by if method in READ else "", *(number(found[row, arm]) for arm in titles), *(at_levels(found, row, axis) for axis in axes)]
+             for method, words in PICTURED.items() for reader, by in READERS.items() if ((row := read_by(method, reader)), "near_4") in found]
+    return commands(*runs) + table(["what is kept", "names from", *titles.values(), *(f"`{axis}` 2, 4" for axis in axes)], lines)
 
 
 def reading():
@@ -166,11 +171,11 @@ def reading():
 def perturbations_read():
     """Success of the true mask by where its names come from, in the control and at levels 2 and 4 of each axis."""
     found = {(row["method"], row["arm"]): row["success"] for row in RUNS["perturbations_read"]["rows"]}
-    rows = {reader: "human" if reader == "simulator" else f"human+names={reader}" for reader in ("simulator", "read", "read_robust")}
+    rows = {reader: read_by("human", reader) for reader in ("simulator", "read", "read_robust")}
     return commands("perturbations_read") + table(
         ["axis, levels 2, 4", *(READERS[reader] for reader in rows)],
         [["control", *(number(found[row, "control"]) for row in rows.values())],
-         *([f"`{axis}`", *(at_levels(found, row, axis) for row in rows.values())] for axis in axes_of(found))])
+         *([f"`{axis}`", *(at_levels(found, row, axis) for row in rows.values())] for axis in axes_of(found, "perturbations"))])
 
 
 RULES = {"random_object": "random object in view", "largest": "largest in the picture", "first_listed": "first that the simulator lists",

@@ -15,12 +15,13 @@ using Place = Which::Rule;
 using Names = std::vector<std::string>;
 constexpr std::array<Place, 4> all_places{Place::leftmost, Place::rightmost, Place::nearest_to, Place::farthest_from};
 
+bool is_among(const Names& all, const std::string& one) { return std::find(all.begin(), all.end(), one) != all.end(); }
+
 Names fitting(const JsonReader& patterns, const Names& space) {
   Names found;
   for (const std::string& name : space)
     for (const JsonReader& pattern : patterns.elements())
-      if (fits(pattern.string(), name) && std::find(found.begin(), found.end(), name) == found.end())
-        found.push_back(name);
+      if (fits(pattern.string(), name) && !is_among(found, name)) found.push_back(name);
   return found;
 }
 
@@ -38,10 +39,9 @@ std::vector<double> read_shares(const JsonReader& reader, const Names& names) {
   return shares;
 }
 
-bool is_among(const Names& all, const std::string& one) { return std::find(all.begin(), all.end(), one) != all.end(); }
-
-// Of a grammar in its own space: looks by name, "not " before it for all other textures.
-PersonGrammar::Hint read_hint(const JsonReader& entry, const PersonGrammar& grammar) {
+// Of a grammar in its own space: looks by name, "not " before it for all other textures. `rules`: of each of its words.
+PersonGrammar::Hint read_hint(const JsonReader& entry, const PersonGrammar& grammar,
+                              const std::vector<std::vector<PersonRule>>& rules) {
   entry.only({"says", "words", "types", "looks", "places"});
   PersonGrammar::Hint hint;
   hint.says = entry.at("says").string();
@@ -73,13 +73,12 @@ PersonGrammar::Hint read_hint(const JsonReader& entry, const PersonGrammar& gram
       if (found == all_places.end()) place.fail("a place of the grammar");
       hint.places.push_back(*found);
     }
-  for (const PersonGrammar::Words& words : grammar.words) {
-    if (!is_among(hint.words, words.a)) continue;
-    const auto rules = rules_of(grammar, words.types);
+  for (std::size_t i = 0; i < grammar.words.size(); ++i) {
+    if (!is_among(hint.words, grammar.words[i].a)) continue;
     const auto left =
-        std::count_if(rules.begin(), rules.end(), [&](const PersonRule& rule) { return leaves(hint, rule); });
-    if (left == 0 || static_cast<std::size_t>(left) == rules.size())
-      entry.fail(fmt::format("parts that some rules of \"{}\" have and others have not", words.a));
+        std::count_if(rules[i].begin(), rules[i].end(), [&](const PersonRule& rule) { return leaves(hint, rule); });
+    if (left == 0 || static_cast<std::size_t>(left) == rules[i].size())
+      entry.fail(fmt::format("parts that some rules of \"{}\" have and others have not", grammar.words[i].a));
   }
   return hint;
 }
@@ -100,8 +99,7 @@ PersonGrammar read_person_grammar(const Json& json, const FeatureSpace& space, c
     entry.only({"a", "types"});
     Names types;
     for (const JsonReader& name : entry.at("types").elements()) {
-      const bool known =
-          std::find(space.object_types.begin(), space.object_types.end(), name.string()) != space.object_types.end();
+      const bool known = is_among(space.object_types, name.string());
       if (!known && own_space) name.fail("an object type of the feature space: a rule would fit no object");
       if (known) types.push_back(name.string());
     }
@@ -128,8 +126,11 @@ PersonGrammar read_person_grammar(const Json& json, const FeatureSpace& space, c
   grammar.any = looks[0], grammar.is = looks[1], grammar.is_not = looks[2];
   grammar.anywhere = places[0];
   for (std::size_t i = 0; i < all_places.size(); ++i) grammar.places.emplace_back(all_places[i], places[i + 1]);
-  if (own_space && reader.has("hints"))
-    for (const JsonReader& entry : reader.at("hints").elements()) grammar.hints.push_back(read_hint(entry, grammar));
+  if (!own_space || !reader.has("hints")) return grammar;
+  std::vector<std::vector<PersonRule>> rules;  // once for all hints
+  for (const PersonGrammar::Words& words : grammar.words) rules.push_back(rules_of(grammar, words.types));
+  for (const JsonReader& entry : reader.at("hints").elements())
+    grammar.hints.push_back(read_hint(entry, grammar, rules));
   return grammar;
 }
 

@@ -342,8 +342,8 @@ report::Document suite_document(const std::string& suite, const std::vector<Name
       section.add<Paragraph>(
           reading,
           {{"The area is what entries are compared by: the mean success from the control to an axis’ last level, "
-            "averaged "
-            "over axes and scenarios. \"Of the control\" divides it by the success in the control; 1 means no loss. "
+            "averaged over axes and scenarios. \"Of the control\" divides it by the success in the control; 1 means no "
+            "loss. "
             "Each axis has its own column. The best constant action loses nothing because it has little to lose; "
             "compare its control."}});
     if (!table.standings.empty()) section.add<Grid>(reading, standings_grid(table, first_row));
