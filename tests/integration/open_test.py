@@ -67,15 +67,15 @@ class OpenedRuns(Case):
         self.assertIn("nowhere: not the directory of a run", self.call("open", "nowhere", expect=2).stderr)
 
     def test_all_runs_while_they_compute(self):
-        self.call(*RUN, "--out", "runs/first")
+        self.call(*RUN, "--out", "runs/my_first")
         self.with_browser()
         self.serve()
         self.assertEqual(self.shown(), self.address)
         status, headers, page = self.ask("/")
         self.assertEqual((status, headers["Refresh"]), (200, None))
-        self.assertIn('<a href="first/report.html">first</a>', page)
+        self.assertIn('<a href="my_first/report.html"><code>my_first</code></a>', page, "as the folder is called")
         self.assertRegex(page, r"2 of 2.*finished")
-        self.assertEqual(self.ask("/first/report.html")[2], (self.dir / "runs/first/report.html").read_text())
+        self.assertEqual(self.ask("/my_first/report.html")[2], (self.dir / "runs/my_first/report.html").read_text())
 
         busy = self.start("run", "q1", "--scenarios", "heart", "--methods", "fixture_faulty+where=act+how=spin", "--plugin-path",
                           FIXTURES / "faulty", "--demos", "2", "--seeds", "0", "--no-reference", "--out", "runs/part/second")
@@ -92,7 +92,7 @@ class OpenedRuns(Case):
         self.assertEqual(self.stop(), (0, ""))
 
     def test_nothing_else_is_served(self):
-        self.call(*RUN, "--out", "runs/first")
+        self.call(*RUN, "--out", "runs/my_first")
         (self.dir / "secret").write_text("a secret")
         (self.dir / "runs/elsewhere").symlink_to(self.dir)
         (self.dir / "runs/second").mkdir()
@@ -103,8 +103,8 @@ class OpenedRuns(Case):
         self.serve("runs")
         page = self.ask("/")[2]
         self.assertRegex(page, "broken.*run.json")
-        for path in ("/first/run.json", "/first/", "/first", "/../secret", "/first/../../secret", "/%2e%2e/secret", "/second/report.html",
-                     "/elsewhere/secret", f"/{self.dir}/secret", "/first/report.html/", "//first/report.html", "/broken/report.html"):
+        for path in ("/my_first/run.json", "/my_first/", "/my_first", "/../secret", "/my_first/../../secret", "/%2e%2e/secret", "/second/report.html",
+                     "/elsewhere/secret", f"/{self.dir}/secret", "/my_first/report.html/", "//my_first/report.html", "/broken/report.html"):
             status, headers, text = self.ask(path)
             self.assertIn(status, (404, 500), path)
             self.assertNotIn("a secret", text, path)

@@ -19,6 +19,10 @@ const auto name_of = [](const auto& info) { return std::string(info.param.name);
 
 const std::string ours = fmt::format("(this program: {})", LGABENCH_PLUGIN_ABI);
 
+// What a plugin's author reads: the page that leads to this version's series.
+const std::string version = LGABENCH_VERSION;
+const std::string page_of_this_version = fmt::format("-to-{}.md)", version.substr(0, version.rfind('.')));
+
 class RefusedByBytes : public testing::TestWithParam<Case> {};
 
 TEST_P(RefusedByBytes, NamesTheCauseAndKeepsTheOthers) {
@@ -46,7 +50,7 @@ TEST_P(RefusedByBytes, NamesTheCauseAndKeepsTheOthers) {
 INSTANTIATE_TEST_SUITE_P(
     Plugin, RefusedByBytes,
     testing::Values(
-        Case{"wrong_sdk", {"SDK \"0.0.9\"", "(this program: \"" LGABENCH_VERSION "\")"}},
+        Case{"wrong_sdk", {"SDK \"0.0.9\"", "(this program: \"" LGABENCH_VERSION "\")", page_of_this_version}},
         Case{"wrong_torch", {"LibTorch \"9.9.9\"", "(this program: \""}},
         Case{"wrong_strings", {"string ABI \"old\"", "(this program: \"cxx11\")"}},
         Case{"wrong_iterators", {"iterators \"debug\"", "(this program: \"plain\")"}},

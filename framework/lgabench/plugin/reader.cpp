@@ -90,7 +90,10 @@ void check_fingerprint(const std::string& fingerprint) {
   for (const auto& [key, our] : ours)
     if (key != "compiler" && theirs[key] != our)
       differences.push_back(fmt::format("{} \"{}\" (this program: \"{}\")", key, theirs[key], our));
-  if (!differences.empty()) throw PluginError(fmt::format("built with {}", fmt::join(differences, ", ")));
+  if (differences.empty()) return;
+  const char* what_to_do =
+      theirs["SDK"] == ours["SDK"] ? "" : ": build it again with this lgabench's package (docs/from-0.3-to-0.4.md)";
+  throw PluginError(fmt::format("built with {}{}", fmt::join(differences, ", "), what_to_do));
 }
 
 template <std::size_t Size>

@@ -23,7 +23,7 @@ namespace {
 TableCell linked(const Report& report, const fs::path& place) {
   const fs::path directory = report.run.directory.lexically_normal(),
                  named = directory.has_filename() ? directory : directory.parent_path();
-  TableCell cell(named.filename().string());
+  TableCell cell(Span(named.filename().string(), Emphasis::code));  // a name of a file keeps its underscores
   cell.link = (fs::absolute(named).lexically_normal().lexically_relative(
                    fs::absolute(place.empty() ? "." : place).lexically_normal()) /
                report_file::page)
@@ -146,7 +146,7 @@ Document progress_document(const std::vector<Progressed>& runs, const std::strin
   grid.align = "llllrrl";
   for (const Progressed& run : runs) {
     const std::size_t cells = run.record.cells.size();
-    TableCell name(run.name);
+    TableCell name(Span(run.name, Emphasis::code));
     if (run.has_report) name.link = (fs::path(run.name) / report_file::page).generic_string();
     grid.rows.push_back({{},
                          {name, run.record.suite, run.record.preset, run.record.started,
