@@ -112,7 +112,7 @@ class OpenedRuns(Case):
         for method in "POST", "PUT", "DELETE", "OPTIONS":
             self.assertEqual(self.ask("/", method)[0], 405, method)
         for host, status in ((f"localhost:{self.port}", 200), ("rebound.example", 421), (f"rebound.example:{self.port}", 421)):
-            self.assertEqual(self.ask("/first/report.html", Host=host)[0], status, host)
+            self.assertEqual(self.ask("/my_first/report.html", Host=host)[0], status, host)
         with socket.create_connection(("127.0.0.1", self.port), timeout=5) as endless:  # a head without end
             endless.sendall(f"GET / HTTP/1.1\r\nHost: localhost:{self.port}\r\n".encode())
             with contextlib.suppress(OSError):
