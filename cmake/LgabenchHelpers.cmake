@@ -95,7 +95,7 @@ function(lgabench_link_data)
   foreach(pair ${tables} answers:framework/lgabench/abstraction/answers disputed:framework/lgabench/abstraction/disputed
                prompts:framework/lgabench/abstraction/prompts
                embeddings:framework/lgabench/learning/embeddings paper:results/paper measured:results/measured formats:docs/formats
-               page:framework/lgabench/report/page templates:framework/lgabench/cli/templates starters:examples
+               page:framework/lgabench/document/page templates:framework/lgabench/cli/templates starters:examples
                study:framework/lgabench/study/pages protocols:framework/lgabench/study/protocols
                persons:framework/lgabench/drawn/persons python:python fetch:cmake/fetch)
     string(REPLACE ":" ";" pair ${pair})

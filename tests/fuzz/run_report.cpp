@@ -1,8 +1,8 @@
 // Somebody else's run, reported, and compared with itself. Pictures are made by a process: here each is a word.
-#include <lgabench/report/agreement.hpp>
-#include <lgabench/report/compare.hpp>
-#include <lgabench/report/report_document.hpp>
-#include <lgabench/report/writers.hpp>
+#include <lgabench/document/writers.hpp>
+#include <lgabench/report/report.hpp>
+#include <lgabench/statistics/agreement.hpp>
+#include <lgabench/statistics/compare.hpp>
 
 #include "run_files.hpp"
 

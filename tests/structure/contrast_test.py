@@ -7,7 +7,7 @@ import unittest
 from pathlib import Path
 
 SOURCE = Path(sys.argv.pop())
-CSS = (SOURCE / "framework/lgabench/report/page/page.css").read_text()
+CSS = (SOURCE / "framework/lgabench/document/page/page.css").read_text()
 
 
 def rgb(colour):
@@ -39,7 +39,7 @@ def drawn_colours():
     """Of lines, marks and bars: name -> colour before it is lifted in the dark. Black is drawn in ink instead."""
     methods = json.loads((SOURCE / "results/paper/methods.json").read_text())["methods"]
     colours = {m["id"]: m["colour"] for m in methods if m["colour"] != "#000000"}
-    names = (SOURCE / "framework/lgabench/report/names.cpp").read_text()
+    names = (SOURCE / "framework/lgabench/statistics/names.cpp").read_text()
     spare = re.search(r"spare\{([^}]*)\}", names)[1]
     colours |= {f"spare {c}": c for c in re.findall(r'"(#\w+)"', spare)}
     colours |= dict(re.findall(r"\.(f\d+|abstraction|policy|perception) \{ --c: (#\w+); \}", CSS))

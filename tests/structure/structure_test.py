@@ -32,8 +32,8 @@ class IncludeGraph(unittest.TestCase):
         self.assertEqual(found, [], f"{folder} must not include {pattern}")
 
     def test_folders_were_found(self):
-        for folder in ("core", "plugin", "abstraction", "learning", "host", "record", "job", "cell", "harness", "report", "http", "study", "drawn",
-                       "leaderboard", "cli", "seeing"):
+        for folder in ("core", "plugin", "abstraction", "learning", "host", "record", "job", "cell", "harness", "statistics", "document", "report", "http",
+                       "study", "drawn", "leaderboard", "cli", "seeing"):
             self.assertTrue(list(includes(f"framework/lgabench/{folder}")), folder)
 
     def test_core_knows_nothing_above_it(self):
@@ -50,7 +50,7 @@ class IncludeGraph(unittest.TestCase):
 
     def test_torch_only_in_learning_sources(self):
         for folder in ("framework/lgabench/core", "framework/lgabench/plugin", "framework/lgabench/abstraction",
-                       "framework/lgabench/job", "framework/lgabench/cell", "framework/lgabench/harness", "framework/lgabench/report", "framework/lgabench/cli", "envs"):
+                       "framework/lgabench/job", "framework/lgabench/cell", "framework/lgabench/harness", "framework/lgabench/cli", "envs"):
             self.forbid(folder, r"torch|ATen|c10")
         headers = [(str(f), p) for f, p in includes("framework/lgabench/learning")
                    if f.suffix == ".hpp" and re.match(r"torch/torch\.h", p)]
@@ -60,7 +60,7 @@ class IncludeGraph(unittest.TestCase):
 
     def test_a_reader_of_names_knows_core_and_abstraction(self):
         self.forbid("framework/lgabench/seeing", r"lgabench/(?!core/|abstraction/|seeing/)|torch|mujoco")
-        for folder in ("job", "cell", "harness", "report", "cli", "host"):
+        for folder in ("job", "cell", "harness", "cli", "host"):
             self.forbid(f"framework/lgabench/{folder}", r"lgabench/seeing/|opencv")
 
     def test_engines_stay_in_their_plugins(self):
@@ -88,9 +88,9 @@ class IncludeGraph(unittest.TestCase):
 
     def test_a_run_and_its_cells_share_jobs_alone(self):
         self.forbid("framework/lgabench/job", r"lgabench/(?!core/|plugin/|abstraction/|record/|job/)")
-        self.forbid("framework/lgabench/harness", r"lgabench/(cell|report|leaderboard|cli)/")
-        self.forbid("framework/lgabench/leaderboard", r"lgabench/(cell|cli)/")
-        self.forbid("framework/lgabench/cell", r"lgabench/(harness|report|cli)/")
+        self.forbid("framework/lgabench/harness", r"lgabench/(cell|statistics|document|report|leaderboard|cli)/")
+        self.forbid("framework/lgabench/leaderboard", r"lgabench/(cell|report|cli)/")
+        self.forbid("framework/lgabench/cell", r"lgabench/(harness|statistics|document|report|cli)/")
 
     def test_records_know_core_and_abstraction(self):
         self.forbid("framework/lgabench/record", r"lgabench/(?!core/|abstraction/|record/)|torch|opencv")
@@ -101,8 +101,13 @@ class IncludeGraph(unittest.TestCase):
                  for file in sorted((SOURCE / "framework").rglob("*.[ch]pp")) if file.parent.name != "record"}
         self.assertEqual({file: all_of_it for file, all_of_it in found.items() if all_of_it}, {})
 
-    def test_the_study_knows_core_abstraction_records_and_reports(self):
-        self.forbid("framework/lgabench/study", r"lgabench/(?!core/|abstraction/|record/|report/|http/|study/)|torch|opencv")
+    def test_numbers_know_no_document_and_documents_no_number(self):
+        self.forbid("framework/lgabench/statistics", r"lgabench/(?!core/|plugin/|abstraction/|record/|job/|statistics/)|torch|ATen|c10|opencv")
+        self.forbid("framework/lgabench/document", r"lgabench/(?!core/|record/layout|statistics/names|document/)|torch|ATen|c10|opencv|boost")
+        self.forbid("framework/lgabench/report", r"lgabench/(?!core/|plugin/|abstraction/|record/|job/|statistics/|document/|report/)|torch|ATen|c10|opencv|boost")
+
+    def test_the_study_knows_core_abstraction_records_numbers_and_documents(self):
+        self.forbid("framework/lgabench/study", r"lgabench/(?!core/|abstraction/|record/|statistics/|document/|http/|study/)|torch|opencv")
 
     def test_a_server_knows_core_alone(self):
         self.forbid("framework/lgabench/http", r"lgabench/(?!core/|http/)|torch|opencv")

@@ -15,7 +15,7 @@
 #include <lgabench/leaderboard/standings.hpp>
 #include <lgabench/leaderboard/suite_page.hpp>
 #include <lgabench/leaderboard/verification.hpp>
-#include <lgabench/report/bootstrap.hpp>
+#include <lgabench/statistics/bootstrap.hpp>
 
 #include "../schemas.hpp"
 #include "leaderboard_board.hpp"

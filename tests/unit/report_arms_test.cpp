@@ -5,9 +5,9 @@
 #include <map>
 #include <set>
 
-#include <lgabench/report/paper.hpp>
 #include <lgabench/report/report.hpp>
-#include <lgabench/report/summary.hpp>
+#include <lgabench/statistics/paper.hpp>
+#include <lgabench/statistics/summary.hpp>
 
 #include "report_run.hpp"
 

@@ -8,8 +8,8 @@
 #include <map>
 
 #include <lgabench/core/random.hpp>
-#include <lgabench/report/bootstrap.hpp>
-#include <lgabench/report/resampled_mean.hpp>
+#include <lgabench/statistics/bootstrap.hpp>
+#include <lgabench/statistics/resampled_mean.hpp>
 
 namespace lgabench::report {
 namespace {

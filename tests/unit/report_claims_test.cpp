@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <map>
 
-#include <lgabench/report/claims.hpp>
 #include <lgabench/report/report.hpp>
+#include <lgabench/statistics/claims.hpp>
 
 #include "report_run.hpp"
 

@@ -1,10 +1,11 @@
 // Comparisons of fabricated runs, and of a cell with itself computed again.
 #include <gtest/gtest.h>
 
-#include <lgabench/report/agreement.hpp>
-#include <lgabench/report/compare.hpp>
-#include <lgabench/report/engines.hpp>
-#include <lgabench/report/summary.hpp>
+#include <lgabench/report/report.hpp>
+#include <lgabench/statistics/agreement.hpp>
+#include <lgabench/statistics/compare.hpp>
+#include <lgabench/statistics/engines.hpp>
+#include <lgabench/statistics/summary.hpp>
 
 #include "report_run.hpp"
 

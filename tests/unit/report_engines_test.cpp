@@ -1,8 +1,8 @@
 // Two engines on the same scenes: what counts, and what does not.
 #include <gtest/gtest.h>
 
-#include <lgabench/report/engines.hpp>
 #include <lgabench/report/report.hpp>
+#include <lgabench/statistics/engines.hpp>
 
 #include "report_run.hpp"
 

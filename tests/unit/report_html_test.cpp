@@ -8,11 +8,11 @@
 #include <set>
 
 #include <lgabench/core/environments.hpp>
+#include <lgabench/document/writers.hpp>
 #include <lgabench/plugin/loader.hpp>
-#include <lgabench/report/names.hpp>
 #include <lgabench/report/report.hpp>
-#include <lgabench/report/tables.hpp>
-#include <lgabench/report/writers.hpp>
+#include <lgabench/statistics/names.hpp>
+#include <lgabench/statistics/tables.hpp>
 
 #include "report_run.hpp"
 

@@ -6,8 +6,8 @@
 #include <regex>
 
 #include <lgabench/core/random.hpp>
-#include <lgabench/report/bootstrap.hpp>
 #include <lgabench/report/report.hpp>
+#include <lgabench/statistics/bootstrap.hpp>
 
 #include "report_run.hpp"
 

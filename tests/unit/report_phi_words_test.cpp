@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <lgabench/core/feature_space.hpp>
-#include <lgabench/report/phi_words.hpp>
+#include <lgabench/statistics/phi_words.hpp>
 
 namespace lgabench::report {
 namespace {

@@ -6,10 +6,10 @@
 #include <set>
 
 #include <lgabench/plugin/loader.hpp>
-#include <lgabench/report/about_suite.hpp>
-#include <lgabench/report/names.hpp>
 #include <lgabench/report/report.hpp>
-#include <lgabench/report/row_names.hpp>
+#include <lgabench/statistics/about_suite.hpp>
+#include <lgabench/statistics/names.hpp>
+#include <lgabench/statistics/row_names.hpp>
 
 #include "report_run.hpp"
 

@@ -9,9 +9,9 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/json.hpp>
+#include <lgabench/document/writers.hpp>
 #include <lgabench/record/perturbed.hpp>
 #include <lgabench/report/report.hpp>
-#include <lgabench/report/writers.hpp>
 
 #include "testing.hpp"
 

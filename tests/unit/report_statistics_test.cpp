@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <lgabench/report/statistics.hpp>
+#include <lgabench/statistics/statistics.hpp>
 
 namespace lgabench::report {
 namespace {

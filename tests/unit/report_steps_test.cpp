@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <lgabench/report/report.hpp>
-#include <lgabench/report/steps.hpp>
+#include <lgabench/statistics/steps.hpp>
 
 #include "report_run.hpp"
 

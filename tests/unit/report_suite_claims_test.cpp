@@ -5,8 +5,8 @@
 #include <map>
 
 #include <lgabench/record/suite_claims.hpp>
-#include <lgabench/report/claims.hpp>
 #include <lgabench/report/report.hpp>
+#include <lgabench/statistics/claims.hpp>
 
 #include "report_run.hpp"
 

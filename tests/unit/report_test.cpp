@@ -10,7 +10,7 @@
 #include <set>
 
 #include <lgabench/report/report.hpp>
-#include <lgabench/report/statistics.hpp>
+#include <lgabench/statistics/statistics.hpp>
 
 #include "report_run.hpp"
 

@@ -5,5 +5,5 @@ target_compile_definitions(scene_hashes_test PRIVATE
   LGABENCH_SCENE_HASHES="${CMAKE_CURRENT_SOURCE_DIR}/scene_hashes.txt")
 lgabench_unit_test(pressure_test SOURCES pressure_test.cpp LINK lgabench_cell lgabench_harness lgabench_tabletop)
 add_dependencies(pressure_test engines)
-lgabench_unit_test(unheard_test SOURCES unheard_test.cpp LINK lgabench_harness lgabench_report lgabench_tabletop)
+lgabench_unit_test(unheard_test SOURCES unheard_test.cpp LINK lgabench_harness lgabench_statistics lgabench_tabletop)
 target_compile_options(unheard_test PRIVATE -O1)

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include <lgabench/core/hash.hpp>
-#include <lgabench/report/writers.hpp>
+#include <lgabench/document/writers.hpp>
 
 #include "../schemas.hpp"
 #include "study_people.hpp"

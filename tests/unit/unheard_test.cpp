@@ -11,7 +11,7 @@
 #include <common/objects.hpp>
 #include <lgabench/harness/expand.hpp>
 #include <lgabench/harness/suite.hpp>
-#include <lgabench/report/statistics.hpp>
+#include <lgabench/statistics/statistics.hpp>
 #include <tabletop/content.hpp>
 #include <tabletop/sampler.hpp>
 

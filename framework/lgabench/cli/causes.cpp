@@ -10,8 +10,8 @@
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/record/layout.hpp>
-#include <lgabench/report/agreement.hpp>
-#include <lgabench/report/results.hpp>
+#include <lgabench/statistics/agreement.hpp>
+#include <lgabench/statistics/results.hpp>
 
 namespace lgabench::cli {
 namespace {

@@ -4,7 +4,7 @@
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/report/compare.hpp>
+#include <lgabench/report/report.hpp>
 
 namespace lgabench::cli {
 namespace {

@@ -12,10 +12,10 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/process.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/document/writers.hpp>
 #include <lgabench/http/page_server.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/report/index.hpp>
-#include <lgabench/report/writers.hpp>
 
 namespace lgabench::cli {
 namespace {

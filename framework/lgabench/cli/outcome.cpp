@@ -8,8 +8,8 @@
 #include <lgabench/core/colour.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
+#include <lgabench/document/writers.hpp>
 #include <lgabench/record/layout.hpp>
-#include <lgabench/report/writers.hpp>
 
 namespace lgabench::cli {
 

@@ -7,9 +7,9 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/document/writers.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/report/report.hpp>
-#include <lgabench/report/writers.hpp>
 
 namespace lgabench::cli {
 namespace {

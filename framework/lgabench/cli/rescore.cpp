@@ -11,7 +11,7 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/record/layout.hpp>
-#include <lgabench/report/pose.hpp>
+#include <lgabench/statistics/pose.hpp>
 
 namespace lgabench::cli {
 namespace {

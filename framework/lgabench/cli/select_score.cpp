@@ -15,7 +15,7 @@
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/expand.hpp>
-#include <lgabench/report/statistics.hpp>
+#include <lgabench/statistics/statistics.hpp>
 
 namespace lgabench::cli {
 namespace {

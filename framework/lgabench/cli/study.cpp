@@ -14,9 +14,9 @@
 #include <lgabench/core/filled.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/document/writers.hpp>
 #include <lgabench/http/page_server.hpp>
 #include <lgabench/record/layout.hpp>
-#include <lgabench/report/writers.hpp>
 #include <lgabench/study/pair_study.hpp>
 #include <lgabench/study/rehearse.hpp>
 #include <lgabench/study/report.hpp>

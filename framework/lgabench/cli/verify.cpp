@@ -18,8 +18,8 @@
 #include <lgabench/harness/recompute.hpp>
 #include <lgabench/harness/run_suite.hpp>
 #include <lgabench/record/layout.hpp>
-#include <lgabench/report/agreement.hpp>
-#include <lgabench/report/pairs.hpp>
+#include <lgabench/statistics/agreement.hpp>
+#include <lgabench/statistics/pairs.hpp>
 
 namespace lgabench::cli {
 namespace {

@@ -88,7 +88,7 @@ Design design_of(const JsonReader& reader) {
   return apply(JsonReader(members, reader.file()), Design{});
 }
 
-// What pages say of the suite (report/about_suite.hpp).
+// What pages say of the suite (statistics/about_suite.hpp).
 void expect_about(const JsonReader& about) {
   about.only({"title", "question", "main_arm", "main_demonstrations", "arms", "arm_titles", "rows", "presets"});
   about.at("question").string();

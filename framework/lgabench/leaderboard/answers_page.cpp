@@ -10,7 +10,7 @@
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/leaderboard/answer_score.hpp>
 #include <lgabench/leaderboard/titles.hpp>
-#include <lgabench/report/statistics.hpp>
+#include <lgabench/statistics/statistics.hpp>
 
 namespace lgabench::leaderboard {
 namespace {

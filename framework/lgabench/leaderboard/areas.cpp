@@ -4,8 +4,8 @@
 
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/perturbations.hpp>
-#include <lgabench/report/curves.hpp>
-#include <lgabench/report/statistics.hpp>
+#include <lgabench/statistics/curves.hpp>
+#include <lgabench/statistics/statistics.hpp>
 
 namespace lgabench::leaderboard {
 namespace {

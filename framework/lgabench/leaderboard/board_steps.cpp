@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include <lgabench/core/rounding.hpp>
+#include <lgabench/document/columns.hpp>
 #include <lgabench/leaderboard/titles.hpp>
-#include <lgabench/report/columns.hpp>
-#include <lgabench/report/names.hpp>
+#include <lgabench/statistics/names.hpp>
 
 namespace lgabench::leaderboard {
 namespace {

@@ -1,4 +1,4 @@
-// What labels, language and the truth add (report/steps.hpp), from the entries of one table.
+// What labels, language and the truth add (statistics/steps.hpp), from the entries of one table.
 #pragma once
 #include <array>
 #include <optional>
@@ -6,7 +6,7 @@
 
 #include <lgabench/leaderboard/standings.hpp>
 #include <lgabench/leaderboard/undisputed.hpp>
-#include <lgabench/report/steps.hpp>
+#include <lgabench/statistics/steps.hpp>
 
 namespace lgabench::leaderboard {
 

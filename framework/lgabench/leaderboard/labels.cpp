@@ -5,7 +5,7 @@
 
 #include <lgabench/leaderboard/standings.hpp>
 #include <lgabench/plugin/loader.hpp>
-#include <lgabench/report/names.hpp>
+#include <lgabench/statistics/names.hpp>
 
 namespace lgabench::leaderboard {
 

@@ -10,7 +10,7 @@
 
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/leaderboard/titles.hpp>
-#include <lgabench/report/about_suite.hpp>
+#include <lgabench/statistics/about_suite.hpp>
 
 namespace lgabench::leaderboard {
 namespace {

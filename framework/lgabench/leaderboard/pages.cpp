@@ -6,11 +6,11 @@
 #include <array>
 #include <set>
 
+#include <lgabench/document/writers.hpp>
 #include <lgabench/leaderboard/overview.hpp>
 #include <lgabench/leaderboard/titles.hpp>
-#include <lgabench/report/about_suite.hpp>
-#include <lgabench/report/names.hpp>
-#include <lgabench/report/writers.hpp>
+#include <lgabench/statistics/about_suite.hpp>
+#include <lgabench/statistics/names.hpp>
 
 namespace lgabench::leaderboard {
 namespace {

@@ -1,7 +1,7 @@
 // From a cell of a run to an entry's line.
 #pragma once
 #include <lgabench/leaderboard/entry.hpp>
-#include <lgabench/report/results.hpp>
+#include <lgabench/statistics/results.hpp>
 
 namespace lgabench::leaderboard {
 

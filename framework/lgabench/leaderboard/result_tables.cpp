@@ -7,8 +7,8 @@
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/leaderboard/areas.hpp>
 #include <lgabench/leaderboard/titles.hpp>
-#include <lgabench/report/about_suite.hpp>
-#include <lgabench/report/bootstrap.hpp>
+#include <lgabench/statistics/about_suite.hpp>
+#include <lgabench/statistics/bootstrap.hpp>
 
 namespace lgabench::leaderboard {
 namespace {

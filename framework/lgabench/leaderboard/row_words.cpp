@@ -6,7 +6,7 @@
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/leaderboard/suite_page.hpp>
 #include <lgabench/leaderboard/verification.hpp>
-#include <lgabench/report/tables.hpp>
+#include <lgabench/statistics/tables.hpp>
 
 namespace lgabench::leaderboard {
 namespace {

@@ -8,9 +8,9 @@
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/job/job.hpp>
+#include <lgabench/job/worker.hpp>
 #include <lgabench/record/layout.hpp>
-#include <lgabench/report/results.hpp>
-#include <lgabench/report/worker.hpp>
+#include <lgabench/statistics/results.hpp>
 
 namespace lgabench::leaderboard {
 namespace {
@@ -190,7 +190,7 @@ std::optional<std::vector<fs::path>> add_scenes(const fs::path& board, const Ent
                                               {{entry.identity.engine, episode->action}}}));
     requests.back()["out"] = (scratch.path / which).string();
   }
-  const report::WorkerAnswers answers = report::ask_worker("strips", requests);
+  const WorkerAnswers answers = ask_worker("strips", requests);
   for (const Json& line : answers.lines)
     if (!line.is_object() || line.contains("problem"))
       throw InputError(line.is_object() ? line.at("problem").get<std::string>() : answers.problem);

@@ -9,7 +9,7 @@
 
 #include <lgabench/abstraction/quality.hpp>
 #include <lgabench/leaderboard/areas.hpp>
-#include <lgabench/report/bootstrap.hpp>
+#include <lgabench/statistics/bootstrap.hpp>
 
 namespace lgabench::leaderboard {
 namespace {

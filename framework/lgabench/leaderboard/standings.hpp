@@ -8,7 +8,7 @@
 
 #include <lgabench/leaderboard/entry.hpp>
 #include <lgabench/leaderboard/tracks.hpp>
-#include <lgabench/report/statistics.hpp>
+#include <lgabench/statistics/statistics.hpp>
 
 namespace lgabench::leaderboard {
 
@@ -57,9 +57,9 @@ std::string why_not_ranked(const Entry& entry, const Track& track = {});
 std::string policy_of(const Entry& entry);
 
 /// The entries of one ranking by score, among them those that have no rank. Entries that were withdrawn, or not yet
-/// replayed, are left out. All share their resamples of test scenes and training seeds (report/bootstrap.hpp), which
-/// makes the paired test of every two of them as cheap as a difference. Holm's correction is over the comparisons of
-/// each entry. Deterministic.
+/// replayed, are left out. All share their resamples of test scenes and training seeds (statistics/bootstrap.hpp),
+/// which makes the paired test of every two of them as cheap as a difference. Holm's correction is over the comparisons
+/// of each entry. Deterministic.
 /// @pre the entries have one setting
 std::vector<Standing> standings(const std::vector<const Entry*>& table, const Track& track = {},
                                 Ranking ranking = Ranking::any_policy);

@@ -8,7 +8,7 @@
 #include <lgabench/leaderboard/suite_page.hpp>
 #include <lgabench/leaderboard/titles.hpp>
 #include <lgabench/record/outcome.hpp>
-#include <lgabench/report/names.hpp>
+#include <lgabench/statistics/names.hpp>
 
 namespace lgabench::leaderboard {
 namespace {

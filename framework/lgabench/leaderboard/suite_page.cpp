@@ -11,9 +11,9 @@
 #include <lgabench/leaderboard/areas.hpp>
 #include <lgabench/leaderboard/board_steps.hpp>
 #include <lgabench/leaderboard/titles.hpp>
-#include <lgabench/report/about_suite.hpp>
-#include <lgabench/report/names.hpp>
-#include <lgabench/report/tables.hpp>
+#include <lgabench/statistics/about_suite.hpp>
+#include <lgabench/statistics/names.hpp>
+#include <lgabench/statistics/tables.hpp>
 
 namespace lgabench::leaderboard {
 namespace {

@@ -4,17 +4,17 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/document/columns.hpp>
 #include <lgabench/leaderboard/board_steps.hpp>
 #include <lgabench/leaderboard/labels.hpp>
 #include <lgabench/leaderboard/scenes.hpp>
 #include <lgabench/leaderboard/standings.hpp>
-#include <lgabench/report/columns.hpp>
 
 namespace lgabench::leaderboard {
 
 /// A row of a ranking, with what it is called.
 struct NamedStanding : Standing {
-  std::string name{};             // as report/names.hpp takes it; no two of a table alike
+  std::string name{};             // as statistics/names.hpp takes it; no two of a table alike
   std::string label{}, policy{};  // what readers are shown in place of the name; no two pairs alike
   bool more = false;              // another row of its method stands above it
 

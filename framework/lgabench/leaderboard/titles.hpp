@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include <lgabench/report/about_suite.hpp>
+#include <lgabench/statistics/about_suite.hpp>
 
 namespace lgabench::leaderboard {
 

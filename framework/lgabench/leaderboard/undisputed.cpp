@@ -8,8 +8,8 @@
 
 #include <lgabench/abstraction/disputed.hpp>
 #include <lgabench/abstraction/scenes.hpp>
-#include <lgabench/report/about_suite.hpp>
-#include <lgabench/report/statistics.hpp>
+#include <lgabench/statistics/about_suite.hpp>
+#include <lgabench/statistics/statistics.hpp>
 
 namespace lgabench::leaderboard {
 namespace {

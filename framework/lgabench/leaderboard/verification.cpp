@@ -9,7 +9,7 @@
 #include <map>
 
 #include <lgabench/core/hash.hpp>
-#include <lgabench/report/statistics.hpp>
+#include <lgabench/statistics/statistics.hpp>
 
 namespace lgabench::leaderboard {
 namespace {

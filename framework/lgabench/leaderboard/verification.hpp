@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <lgabench/leaderboard/entry.hpp>
-#include <lgabench/report/agreement.hpp>
+#include <lgabench/statistics/agreement.hpp>
 
 namespace lgabench::leaderboard {
 

@@ -39,10 +39,10 @@ struct RunRecord {
   Json settings = Json::object();  // row -> options beside the plugin's defaults
   Json machine = Json::object();   // with "processor", a text
   Json answers = Json::array();    // the files of answers/, and whose they are
-  Json about = nullptr;        // of the user's own suite, what its file said of it (report/about_suite.hpp); null: none
-  Json claims = nullptr;       // of the suite, as its file said when the run began (suite_claims.hpp); null: none
-  std::optional<Shard> shard;  // none: the whole run, or more than one part of it
-  Json merged = nullptr;       // of a merged run: command, machine and start of each part
+  Json about = nullptr;            // of the user's own suite, what its file said of it (about_suite.hpp); null: none
+  Json claims = nullptr;           // of the suite, as its file said when the run began (suite_claims.hpp); null: none
+  std::optional<Shard> shard;      // none: the whole run, or more than one part of it
+  Json merged = nullptr;           // of a merged run: command, machine and start of each part
 
   std::string processor() const { return machine.at("processor"); }
   /// The SHA-256 of each program that the record names, and of each plugin by its kind and id: "method lga".

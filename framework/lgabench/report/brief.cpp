@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <set>
 
+#include <lgabench/document/writers.hpp>
 #include <lgabench/report/headline.hpp>
 #include <lgabench/report/sections.hpp>
-#include <lgabench/report/writers.hpp>
 
 namespace lgabench::report {
 namespace {

@@ -1,14 +1,10 @@
 // The first sentences of a report: what its suite asks, and what the run answers.
 #pragma once
-#include <lgabench/report/about_suite.hpp>
 #include <lgabench/report/report_document.hpp>
-#include <lgabench/report/tables.hpp>
+#include <lgabench/statistics/about_suite.hpp>
+#include <lgabench/statistics/tables.hpp>
 
 namespace lgabench::report {
-
-/// The column that the suite's question is about: its main arm and number of demonstrations, else the last arm that all
-/// scenarios have and the most demonstrations. None for a table without rows.
-std::optional<Column> main_column(const Table& table, const AboutSuite& about);
 
 /// Of a table's methods the `most` that a reader would compare the first one with: those that the paper does not have,
 /// then its baselines.

@@ -12,10 +12,10 @@
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/record/cell_status.hpp>
 #include <lgabench/record/layout.hpp>
-#include <lgabench/report/row_names.hpp>
 #include <lgabench/report/sections.hpp>
-#include <lgabench/report/settings.hpp>
-#include <lgabench/report/tables.hpp>
+#include <lgabench/statistics/row_names.hpp>
+#include <lgabench/statistics/settings.hpp>
+#include <lgabench/statistics/tables.hpp>
 
 namespace lgabench::report {
 namespace {

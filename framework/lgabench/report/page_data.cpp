@@ -9,9 +9,9 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/shown.hpp>
 #include <lgabench/record/outcome.hpp>
-#include <lgabench/report/names.hpp>
-#include <lgabench/report/phi_words.hpp>
 #include <lgabench/report/report_document.hpp>
+#include <lgabench/statistics/names.hpp>
+#include <lgabench/statistics/phi_words.hpp>
 
 namespace lgabench::report {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <map>
 
-#include <lgabench/report/pairs.hpp>
 #include <lgabench/report/perturbation_parts.hpp>
 #include <lgabench/report/sections.hpp>
+#include <lgabench/statistics/pairs.hpp>
 
 namespace lgabench::report {
 namespace {

@@ -10,9 +10,9 @@
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/selection.hpp>
 #include <lgabench/job/job.hpp>
+#include <lgabench/job/worker.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/record/shown.hpp>
-#include <lgabench/report/worker.hpp>
 
 namespace lgabench::report {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include <lgabench/core/action.hpp>
-#include <lgabench/report/engines.hpp>
-#include <lgabench/report/results.hpp>
+#include <lgabench/statistics/engines.hpp>
+#include <lgabench/statistics/results.hpp>
 
 namespace lgabench::report {
 

@@ -4,8 +4,9 @@
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/report/brief.hpp>
-#include <lgabench/report/pose.hpp>
 #include <lgabench/report/report_document.hpp>
+#include <lgabench/statistics/compare.hpp>
+#include <lgabench/statistics/pose.hpp>
 
 namespace lgabench::report {
 
@@ -33,12 +34,12 @@ Report write_report(const fs::path& run);
 /// @throws as read_run() and judge_by_pose().
 Report report_by_pose(const fs::path& run, const PoseTolerance& tolerance);
 
-/// What a page without episodes shows on a click: nothing.
-inline Json no_episodes() { return {{"titles", Json::array()}}; }
+/// summary.csv, and episodes.csv: a line for each episode of the run (docs/formats).
+std::string to_csv(const Summary& summary);
+std::string episodes_csv(const RunResults& run);
 
-/// Writes a document's report.md, report.html (`data`: as html() takes it), figures/ and tables/ into the directory.
-/// Figures and tables that are there of another report are removed.
-void write_document(const fs::path& directory, const Document& document, const Json& data = no_episodes());
+/// Below the verdict, tables for a terminal, with `each_phase` of the seconds of all phases.
+std::string comparison_text(const RunComparison& comparison, bool each_phase = false);
 
 /// Writes `file`, a page over several runs that have a report. Returns its document.
 Document write_index(const std::vector<Report>& reports, const fs::path& file);

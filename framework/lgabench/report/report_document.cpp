@@ -7,10 +7,10 @@
 #include <set>
 
 #include <lgabench/report/headline.hpp>
-#include <lgabench/report/row_names.hpp>
 #include <lgabench/report/sections.hpp>
-#include <lgabench/report/settings.hpp>
-#include <lgabench/report/tables.hpp>
+#include <lgabench/statistics/row_names.hpp>
+#include <lgabench/statistics/settings.hpp>
+#include <lgabench/statistics/tables.hpp>
 
 namespace lgabench::report {
 namespace {
@@ -101,6 +101,21 @@ TableCell with_interval(double value, const Interval& interval, const std::strin
   return Spans{Span::number(set(value), place + members[0], emphasis), aside(" [", ""),
                aside(set(interval.low), place + members[1]),           aside(", ", ""),
                aside(set(interval.high), place + members[2]),          aside("]", "")};
+}
+
+Spans marks_spans(const Row& row) {
+  Spans spans;
+  const auto add = [&spans](const std::string& sign, const std::string& meaning) {
+    spans.push_back(Span::number(sign));
+    spans.back().title = meaning;
+  };
+  for (const Mark& mark : table_marks)
+    if (row.marked(mark.word)) add(mark.sign, mark.meaning);
+  if (acts_the_same(row)) {
+    spans.push_back(Span::number(" "));
+    add("=", "the same actions as in " + row.shift->against_title);
+  }
+  return spans;
 }
 
 TableCell count_cell(const Row& row, const std::string& member, int count) {

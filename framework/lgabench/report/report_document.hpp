@@ -3,13 +3,13 @@
 #include <string>
 #include <vector>
 
-#include <lgabench/report/about_suite.hpp>
-#include <lgabench/report/claims.hpp>
-#include <lgabench/report/document.hpp>
-#include <lgabench/report/engines.hpp>
-#include <lgabench/report/paper.hpp>
+#include <lgabench/document/document.hpp>
 #include <lgabench/report/pictures.hpp>
-#include <lgabench/report/summary.hpp>
+#include <lgabench/statistics/about_suite.hpp>
+#include <lgabench/statistics/claims.hpp>
+#include <lgabench/statistics/engines.hpp>
+#include <lgabench/statistics/paper.hpp>
+#include <lgabench/statistics/summary.hpp>
 
 namespace lgabench::report {
 

@@ -21,6 +21,8 @@ TableCell count_cell(const Row& row, const std::string& member, int count);
 TableCell with_interval(double value, const Interval& interval, const std::string& place,
                         const std::array<const char*, 3>& members, std::string (*set)(double),
                         Emphasis emphasis = Emphasis::none);
+/// The row's marks, each with its meaning; with "=" where it acted exactly as in the first arm.
+Spans marks_spans(const Row& row);
 /// A rate and a difference of two as they are set everywhere: "0.85", "+0.10".
 inline std::string rate_text(double x) { return fixed(x); }
 inline std::string signed_rate(double x) { return signed_text(x); }

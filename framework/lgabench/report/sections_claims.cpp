@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include <lgabench/report/columns.hpp>
-#include <lgabench/report/pairs.hpp>
+#include <lgabench/document/columns.hpp>
 #include <lgabench/report/sections.hpp>
+#include <lgabench/statistics/pairs.hpp>
 
 namespace lgabench::report {
 namespace {

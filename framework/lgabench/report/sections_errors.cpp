@@ -6,9 +6,9 @@
 #include <tuple>
 
 #include <lgabench/core/environment.hpp>
-#include <lgabench/report/about_suite.hpp>
-#include <lgabench/report/columns.hpp>
+#include <lgabench/document/columns.hpp>
 #include <lgabench/report/sections.hpp>
+#include <lgabench/statistics/about_suite.hpp>
 
 namespace lgabench::report {
 namespace {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <set>
 
-#include <lgabench/report/columns.hpp>
+#include <lgabench/document/columns.hpp>
 #include <lgabench/report/perturbation_parts.hpp>
 #include <lgabench/report/sections.hpp>
-#include <lgabench/report/tables.hpp>
+#include <lgabench/statistics/tables.hpp>
 
 namespace lgabench::report {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <lgabench/record/layout.hpp>
 #include <lgabench/report/sections.hpp>
-#include <lgabench/report/tables.hpp>
+#include <lgabench/statistics/tables.hpp>
 
 namespace lgabench::report {
 namespace {

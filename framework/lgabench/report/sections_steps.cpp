@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include <lgabench/report/sections.hpp>
-#include <lgabench/report/tables.hpp>
+#include <lgabench/statistics/tables.hpp>
 
 namespace lgabench::report {
 namespace {

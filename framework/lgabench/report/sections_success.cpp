@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include <lgabench/report/sections.hpp>
-#include <lgabench/report/tables.hpp>
+#include <lgabench/statistics/tables.hpp>
 
 namespace lgabench::report {
 namespace {

@@ -9,10 +9,10 @@
 #include <set>
 
 #include <lgabench/core/environments.hpp>
-#include <lgabench/report/columns.hpp>
-#include <lgabench/report/phi_words.hpp>
+#include <lgabench/document/columns.hpp>
 #include <lgabench/report/sections.hpp>
-#include <lgabench/report/tables.hpp>
+#include <lgabench/statistics/phi_words.hpp>
+#include <lgabench/statistics/tables.hpp>
 
 namespace lgabench::report {
 namespace {

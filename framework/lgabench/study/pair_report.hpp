@@ -1,6 +1,6 @@
 // What a study of disputed pairs found, in words, tables and JSON.
 #pragma once
-#include <lgabench/report/document.hpp>
+#include <lgabench/document/document.hpp>
 #include <lgabench/study/results.hpp>
 
 namespace lgabench::study {

@@ -10,7 +10,7 @@
 #include <lgabench/abstraction/disputed.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/scenario.hpp>
-#include <lgabench/report/statistics.hpp>
+#include <lgabench/statistics/statistics.hpp>
 
 namespace lgabench::study {
 namespace {

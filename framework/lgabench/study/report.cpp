@@ -9,9 +9,7 @@
 #include <lgabench/abstraction/quality.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/report/report.hpp>
-#include <lgabench/report/sections.hpp>
-#include <lgabench/report/writers.hpp>
+#include <lgabench/document/writers.hpp>
 #include <lgabench/study/pair_report.hpp>
 
 namespace lgabench::study {

@@ -1,6 +1,6 @@
 // A study's results as a document, files and JSON.
 #pragma once
-#include <lgabench/report/document.hpp>
+#include <lgabench/document/document.hpp>
 #include <lgabench/study/results.hpp>
 
 namespace lgabench::study {

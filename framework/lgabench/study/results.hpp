@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <lgabench/abstraction/quality.hpp>
-#include <lgabench/report/statistics.hpp>
+#include <lgabench/statistics/statistics.hpp>
 #include <lgabench/study/pair_study.hpp>
 #include <lgabench/study/study.hpp>
 

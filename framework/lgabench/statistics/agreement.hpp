@@ -1,0 +1,64 @@
+// Do cells that were computed again agree with what was recorded?
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <lgabench/core/files.hpp>
+#include <lgabench/statistics/statistics.hpp>
+
+namespace lgabench::report {
+
+enum class Agreement {
+  identical,       // every byte of what holds no clock
+  same_outcomes,   // every episode succeeded or failed as recorded; actions or training differ
+  other_outcomes,  // some episodes ended differently: whether they are few enough, the verdict over all cells says
+  differs          // the same bytes are owed, or nothing can be compared: another Selection, scene or arm
+};
+/// "bit-identical", "same outcomes", "other outcomes", "differs"
+std::string to_string(Agreement agreement);
+
+struct CellAgreement {
+  Agreement agreement = Agreement::differs;
+  std::string detail;  // what differs first, in one line; empty where nothing does
+  // Episodes, over all arms, and those that succeeded in one of them alone. Of outcomes that can be compared; else 0.
+  int only_recorded = 0, only_recomputed = 0, episodes = 0;
+};
+
+/// Compares the directories of two finished cells. `excused`: build, processor or data are not those of the record.
+/// Without that the same bytes are owed, and anything else differs. What was selected is not a matter of numerics: it
+/// differs, excused or not. Attributions are compared where both have some.
+/// @throws InputError for files that are not as docs/formats says.
+CellAgreement compare_cells(const fs::path& recorded, const fs::path& recomputed, bool excused);
+
+/// The episodes of several cells put together: three that changed in each of two cells may be chance in each and are
+/// none in both.
+struct PooledAgreement {
+  std::string row;  // "" over all rows
+  int cells = 0, only_recorded = 0, only_recomputed = 0;
+  double p_holm = 1;  // McNemar's exact test, Holm's p over the rows and all rows
+
+  bool differs() const { return p_holm <= alpha; }
+};
+
+/// Share of episodes that may end otherwise where the same bytes are not owed, as on another processor.
+constexpr double most_flips = .01;
+
+/// What cells that were computed again come to, all together.
+enum class Reproduction {
+  identical,  // every cell, to the bit
+  agrees,     // at most most_flips of the episodes ended differently, no more of them one way than chance allows
+  differs
+};
+/// "identical", "agrees", "differs"
+std::string to_string(Reproduction verdict);
+
+/// The one rule for `verify` and the leaderboard. By chance: no row of pooled() differs, nor all rows together.
+/// `cells`: row and agreement. @pre not empty
+Reproduction verdict_of(const std::vector<std::pair<std::string, CellAgreement>>& cells);
+
+/// Pools the cells of each row in which an episode changed, by name, and all of them where there are several such rows.
+/// `cells`: row and agreement.
+std::vector<PooledAgreement> pooled(const std::vector<std::pair<std::string, CellAgreement>>& cells);
+
+}  // namespace lgabench::report

@@ -1,0 +1,55 @@
+// The rows of one (layout, engine) as claims compare them: every policy of the one with its pair of the other.
+#pragma once
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <lgabench/record/suite_claims.hpp>
+#include <lgabench/statistics/claims.hpp>
+#include <lgabench/statistics/paper.hpp>
+
+namespace lgabench::report {
+
+/// The cells of one (layout, engine), by row, demonstrations, then scenario and training seed.
+struct Field {
+  /// By participant, "" where nobody was asked.
+  using People = std::map<std::string, const CellResult*>;
+  /// By scenario and training seed.
+  using Policies = std::map<std::pair<std::string, long long>, People>;
+
+  std::string layout, engine;
+  bool rehearsal = false;         // a cell is based on answers that are no people's
+  std::vector<std::string> arms;  // as the scenarios list them
+  std::set<int> demonstrations;   // of the methods
+  std::map<std::string, std::map<int, Policies>> rows;
+
+  void add(const CellResult& cell);
+  /// nullptr where there is none.
+  const Policies* find(const std::string& row, int n) const;
+  std::vector<const CellResult*> cells() const;
+};
+
+/// The row of the field whose resolved options are the method's, and whose name tells it apart by nothing else: "lga"
+/// of a preset that sets instances=first as well as "lga+instances=first", never "lga+epochs=5". "" where there is
+/// none.
+std::string find_row(const Field& field, const ClaimedMethod& method);
+
+/// `above` against `below`, every policy of the one with its pair; not tested where a row is missing, or where one
+/// lacks its pair, since whoever fails on hard scenarios would gain by it. Verdicts are left open.
+ClaimedDifference measured(const Field& field, const std::string& claim, const ClaimedMethod& above,
+                           const ClaimedMethod& below, const std::string& arm, int n);
+
+/// Likewise of two rows that the field has at this number of demonstrations.
+ClaimedDifference measured_rows(const Field& field, const std::string& claim, const std::string& above,
+                                const std::string& below, const std::string& arm, int n);
+
+/// What success does per 0.1 of the option of both methods, least squares over its levels, of `above` minus that of
+/// `below`; paired as above, all levels together.
+ClaimedDifference measured_slope(const Field& field, const SuiteClaim& claim, const std::string& arm, int n);
+
+/// As one that enters means.
+bool has_arm(const CellResult& cell, const std::string& arm);
+
+}  // namespace lgabench::report

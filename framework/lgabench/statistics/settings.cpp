@@ -1,0 +1,105 @@
+#include <lgabench/statistics/settings.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <map>
+#include <set>
+
+#include <lgabench/core/terminal.hpp>
+#include <lgabench/plugin/loader.hpp>
+#include <lgabench/statistics/names.hpp>
+
+namespace lgabench::report {
+namespace {
+
+// Names of the run's rows that a description of methods.json fits, in the order of tables.
+std::vector<std::string> rows_like(const RunResults& run, const JsonReader& description) {
+  std::set<std::string, ByRank> rows;
+  for (const CellResult& cell : run.cells)
+    if (fits(cell, description)) rows.insert(cell.method);
+  std::vector<std::string> names;
+  for (const std::string& row : rows) names.push_back(display_name(row));
+  return names;
+}
+
+// What methods.json says of rows that are no reading of the paper, or are one method under two names.
+std::vector<std::string> remarks(const RunResults& run) {
+  const fs::path file = data_directory() / "paper" / "methods.json";
+  const Json json = read_json(file);
+  std::vector<std::string> lines;
+  for (const JsonReader& remark : JsonReader(json, file.string()).at("remarks").elements()) {
+    std::vector<std::string> all;
+    bool applies = true;
+    for (const JsonReader& description : remark.at("rows").elements()) {
+      const std::vector<std::string> names = rows_like(run, description);
+      applies = applies && !names.empty();
+      all.insert(all.end(), names.begin(), names.end());
+    }
+    if (applies) lines.push_back(fmt::format("{}: {}", remark.at("text").string(), fmt::join(all, ", ")));
+  }
+  return lines;
+}
+
+// "loss=squared: LGA, Human": rows with the same options together, in the order of tables.
+std::vector<std::string> options_beside_defaults(const Json& settings) {
+  std::map<std::string, std::string, ByRank> rows;  // their options
+  for (const auto& [row, options] : settings.items()) {
+    std::vector<std::string> texts;
+    for (const auto& [option, value] : options.items()) texts.push_back(option + "=" + option_text(value));
+    rows[row] = fmt::format("{}", fmt::join(texts, ", "));
+  }
+  std::vector<std::pair<std::string, std::vector<std::string>>> groups;  // options, rows
+  for (const auto& [row, options] : rows) {
+    std::size_t at = 0;
+    while (at < groups.size() && groups[at].first != options) ++at;
+    if (at == groups.size()) groups.push_back({options, {}});
+    groups[at].second.push_back(display_name(row));
+  }
+  std::vector<std::string> lines;
+  for (const auto& [options, names] : groups) lines.push_back(fmt::format("{}: {}", options, fmt::join(names, ", ")));
+  return lines;
+}
+
+}  // namespace
+
+bool fits(const CellResult& cell, const JsonReader& description) {
+  bool all = !description.has("id") || cell.id == description.at("id").string();
+  if (description.has("options"))
+    for (const auto& [option, value] : description.at("options").json().items())
+      all = all && cell.options.value(option, Json()) == value;
+  return all;
+}
+
+std::string seen_through(const RunResults& run) {
+  for (const CellResult& cell : run.cells)
+    if (const std::optional<TrainOn>& train_on = cell.configuration.train_on)
+      return fmt::format("{}, {}", one_line(train_on->axis),
+                         train_on->level ? fmt::format("level {}", *train_on->level) : "at a level drawn for each");
+  return "";
+}
+
+std::vector<std::string> settings(const RunResults& run) {
+  std::vector<std::string> lines;
+  if (!run.record.preset.empty()) lines.push_back("preset " + run.record.preset);
+  for (const std::string& line : options_beside_defaults(run.record.settings))
+    lines.push_back("beside the plugins' defaults, " + line);
+  if (run.record.request.value("test_scenes", Json()) == TestScenes::per_seed)
+    lines.emplace_back("each training seed plays test scenes of its own");
+  if (const std::string through = seen_through(run); !through.empty())
+    lines.push_back("methods saw their demonstrations through " + through);
+  if (const Json played = run.record.request.value("played", Json()); played.is_object()) {
+    std::vector<std::string> some;
+    for (const Json& axis : played.value("axes", Json::array())) {
+      some.push_back(axis.value("axis", ""));
+      if (const auto levels = axis.value("levels", std::vector<int>()); !levels.empty())
+        some.back() += fmt::format(" {}", fmt::join(levels, ", "));
+    }
+    for (const Json& arm : played.value("arms", Json::array())) some.push_back(arm.get<std::string>());
+    lines.push_back("beside first arms, only these were played: " + one_line(fmt::format("{}", fmt::join(some, "; "))));
+  }
+  for (const std::string& line : remarks(run)) lines.push_back(line);
+  return lines;
+}
+
+}  // namespace lgabench::report
