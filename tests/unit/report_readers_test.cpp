@@ -9,7 +9,7 @@
 #include <lgabench/report/report.hpp>
 #include <lgabench/statistics/about_suite.hpp>
 #include <lgabench/statistics/names.hpp>
-#include <lgabench/statistics/row_names.hpp>
+#include <lgabench/statistics/settings.hpp>
 
 #include "report_run.hpp"
 

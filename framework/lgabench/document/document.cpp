@@ -27,6 +27,14 @@ std::string Grid::text_align() const {
   return text;
 }
 
+void put(Grid& grid, TableCell head, char align, TableCell cell) {
+  if (grid.rows.size() == 1) {
+    grid.heads.push_back(std::move(head));
+    grid.align += align;
+  }
+  grid.rows.back().cells.push_back(std::move(cell));
+}
+
 std::vector<const Grid*> Document::grids() const {
   std::vector<const Grid*> all;
   for (const Section& section : sections)

@@ -94,6 +94,9 @@ struct Grid {
   std::string text_align() const;
 };
 
+/// Appends a cell to the grid's last row. The first row's cells bring their columns' heads and alignment, l or r.
+void put(Grid& grid, TableCell head, char align, TableCell cell);
+
 struct Heading {
   std::string text;
 };

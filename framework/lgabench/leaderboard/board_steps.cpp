@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include <lgabench/core/rounding.hpp>
-#include <lgabench/document/columns.hpp>
 #include <lgabench/leaderboard/titles.hpp>
 #include <lgabench/statistics/names.hpp>
 

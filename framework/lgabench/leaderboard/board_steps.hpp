@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include <lgabench/document/document.hpp>
 #include <lgabench/leaderboard/standings.hpp>
 #include <lgabench/leaderboard/undisputed.hpp>
 #include <lgabench/statistics/steps.hpp>

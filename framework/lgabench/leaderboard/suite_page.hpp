@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <lgabench/document/columns.hpp>
+#include <lgabench/document/document.hpp>
 #include <lgabench/leaderboard/board_steps.hpp>
 #include <lgabench/leaderboard/labels.hpp>
 #include <lgabench/leaderboard/scenes.hpp>

@@ -1,14 +1,13 @@
-// The first sentences of a report: what its suite asks, and what the run answers.
+// The first sentences of a report: what its suite asks, and what the run answers; and their numbers for a terminal.
 #pragma once
+#include <string>
+#include <vector>
+
 #include <lgabench/report/report_document.hpp>
 #include <lgabench/statistics/about_suite.hpp>
 #include <lgabench/statistics/tables.hpp>
 
 namespace lgabench::report {
-
-/// Of a table's methods the `most` that a reader would compare the first one with: those that the paper does not have,
-/// then its baselines.
-std::vector<std::string> most_compared(const std::vector<std::string>& methods, std::size_t most);
 
 /// "Mean over 13 scenarios, 50 demonstrations: LGA succeeds in 0.57 of the episodes, 0.41 [0.32, 0.50] more than
 /// GCBC-SEG, ...": paired differences of the first method of the first table to others and to the random visible
@@ -20,5 +19,17 @@ std::vector<ArmLine> arm_lines(const Material& material, const AboutSuite& about
 
 /// "All rows: policy=heat_map, ...": what all rows share beside the plugins' defaults; empty where that is nothing.
 Spans setting_line(const RunResults& run);
+
+/// What a run ends with in a terminal, beside its headline.
+struct Brief {
+  /// Success on the mean over scenarios, in at most 12 lines of 80 columns: two references, and eight methods, the
+  /// headline's among them; the numbers of demonstrations where there is one arm, else the arms, else the main one and
+  /// the mean over all. Empty where nothing was played.
+  Grid means;
+  std::vector<std::string> notes;  // its marks, what it leaves out, what the run lacks, errors of methods
+};
+
+/// Of the run's first table.
+Brief brief(const Material& material);
 
 }  // namespace lgabench::report

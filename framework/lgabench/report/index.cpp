@@ -13,7 +13,6 @@
 #include <lgabench/record/cell_status.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/report/sections.hpp>
-#include <lgabench/statistics/row_names.hpp>
 #include <lgabench/statistics/settings.hpp>
 #include <lgabench/statistics/tables.hpp>
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include <lgabench/core/files.hpp>
-#include <lgabench/report/brief.hpp>
+#include <lgabench/report/headline.hpp>
 #include <lgabench/report/report_document.hpp>
 #include <lgabench/statistics/compare.hpp>
 #include <lgabench/statistics/pose.hpp>

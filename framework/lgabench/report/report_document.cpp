@@ -8,7 +8,6 @@
 
 #include <lgabench/report/headline.hpp>
 #include <lgabench/report/sections.hpp>
-#include <lgabench/statistics/row_names.hpp>
 #include <lgabench/statistics/settings.hpp>
 #include <lgabench/statistics/tables.hpp>
 

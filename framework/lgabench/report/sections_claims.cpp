@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include <lgabench/document/columns.hpp>
+#include <lgabench/document/document.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/statistics/pairs.hpp>
 

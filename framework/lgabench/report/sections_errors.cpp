@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include <lgabench/core/environment.hpp>
-#include <lgabench/document/columns.hpp>
+#include <lgabench/document/document.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/statistics/about_suite.hpp>
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include <lgabench/document/columns.hpp>
+#include <lgabench/document/document.hpp>
 #include <lgabench/report/perturbation_parts.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/statistics/tables.hpp>

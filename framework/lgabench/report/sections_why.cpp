@@ -9,7 +9,7 @@
 #include <set>
 
 #include <lgabench/core/environments.hpp>
-#include <lgabench/document/columns.hpp>
+#include <lgabench/document/document.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/statistics/phi_words.hpp>
 #include <lgabench/statistics/tables.hpp>

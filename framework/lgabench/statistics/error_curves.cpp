@@ -10,6 +10,7 @@
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/parallel.hpp>
 #include <lgabench/statistics/pairs.hpp>
+#include <lgabench/statistics/summary.hpp>
 
 namespace lgabench::report {
 namespace {

@@ -13,6 +13,7 @@
 #include <lgabench/statistics/bootstrap.hpp>
 #include <lgabench/statistics/names.hpp>
 #include <lgabench/statistics/pairs.hpp>
+#include <lgabench/statistics/summary.hpp>
 
 namespace lgabench::report {
 namespace {

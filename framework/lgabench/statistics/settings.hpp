@@ -1,6 +1,9 @@
-// How a run was set, beyond what its tables say.
+// How a run was set, beyond what its tables say, and what its rows are called for that: no option that tells two of
+// them apart is hidden.
 #pragma once
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <lgabench/statistics/results.hpp>
@@ -17,5 +20,17 @@ std::string seen_through(const RunResults& run);
 /// test scenes that each training seed has to itself, seen_through(), rows that are no reading of the paper or of its
 /// code, rows that are one method under two names. For the head of a report.
 std::vector<std::string> settings(const RunResults& run);
+
+/// A row's name -> the name with every option that readers must know, as display_name() takes it: options in which two
+/// rows of the run differ, at each row that has them, and options beside the plugin's default that neither the suite's
+/// own design sets nor all rows share. "lga" -> "lga+policy=heat_map".
+std::map<std::string, std::string> told_names(const RunResults& run);
+
+/// The same for rows that stand in one table with those of other runs: with the options in which two rows of one method
+/// differ, of whichever run. One map for each run.
+std::vector<std::map<std::string, std::string>> told_names(const std::vector<const RunResults*>& runs);
+
+/// Options beside the plugins' defaults that all methods of the run share: ("policy", "heat_map").
+std::vector<std::pair<std::string, std::string>> shared_options(const RunResults& run);
 
 }  // namespace lgabench::report

@@ -9,7 +9,6 @@
 
 #include <lgabench/core/parallel.hpp>
 #include <lgabench/statistics/bootstrap.hpp>
-#include <lgabench/statistics/curves.hpp>
 #include <lgabench/statistics/names.hpp>
 #include <lgabench/statistics/pairs.hpp>
 

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <lgabench/core/environments.hpp>
-#include <lgabench/statistics/curves.hpp>
 #include <lgabench/statistics/summary.hpp>
 
 namespace lgabench::report {
