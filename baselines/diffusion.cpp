@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include <lgabench/abstraction/select_features.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/learning/cloning_method.hpp>
 #include <lgabench/learning/torch_learner.hpp>
@@ -82,9 +83,8 @@ class Coding {
 
  private:
   bool is_turn(std::size_t number) const {
-    return std::any_of(space_.rotations.begin(), space_.rotations.end(), [number](const auto& turn) {
-      return std::find(turn.begin(), turn.end(), number) != turn.end();
-    });
+    return std::any_of(space_.rotations.begin(), space_.rotations.end(),
+                       [number](const auto& turn) { return lgabench::contains(turn, number); });
   }
   std::vector<double> whole(const Action& action) const {
     std::vector<double> all;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/stations.hpp>
 
 // Type and texture of objects, each as often as it was taken.
@@ -15,7 +16,7 @@ struct Counts {
 
   bool none() const { return objects.empty(); }
   bool has(const lgabench::Instance& one) const {
-    return std::find(objects.begin(), objects.end(), std::pair(one.object_type, one.texture)) != objects.end();
+    return lgabench::contains(objects, std::pair(one.object_type, one.texture));
   }
   /// (times its type + 1/2) (times its texture + 1/2), as the reference row most_demonstrated has it.
   double score(const lgabench::Instance& one) const {

@@ -2,6 +2,7 @@
 #pragma once
 #include <lgabench/abstraction/preference.hpp>
 #include <lgabench/abstraction/select_features.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/drawn/persons.hpp>
 #include <lgabench/learning/cloning_method.hpp>
 
@@ -50,9 +51,7 @@ class Plga : public lgabench::CloningMethod {
       lgabench::Meaning meaning = lgabench::drawn::meaning_of(rule, space_);
       std::vector<std::string> textures;
       for (const std::string& texture : meaning.sets.front().textures)
-        if (std::find(words.product().textures.begin(), words.product().textures.end(), texture) !=
-            words.product().textures.end())
-          textures.push_back(texture);
+        if (lgabench::contains(words.product().textures, texture)) textures.push_back(texture);
       meaning.sets.front().textures = std::move(textures);
       if (!meaning.empty()) all.push_back({"a rule of the grammar", std::move(meaning), rule.prior});
     }

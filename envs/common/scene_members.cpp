@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <lgabench/core/contains.hpp>
 
 namespace lgabench::common {
 namespace {
@@ -13,9 +13,7 @@ std::vector<std::string> read_missing(const JsonReader& list, const std::vector<
   std::vector<std::string> names = list.strings();
   if (names.empty()) list.fail("at least one name");
   for (const JsonReader& name : list.elements()) {
-    const auto has = [&name](const std::vector<std::string>& all) {
-      return std::find(all.begin(), all.end(), name.string()) != all.end();
-    };
+    const auto has = [&name](const std::vector<std::string>& all) { return lgabench::contains(all, name.string()); };
     if (!has(space)) name.fail("a name of the feature space");
     for (const ScenarioCommand& command : scenario.commands)
       if (has(command.truth.target.product().*meant))

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include <common/scene_members.hpp>
 #include <mobile/mobile.hpp>
 #include <mobile/tables.hpp>
+
+#include <lgabench/core/contains.hpp>
 
 namespace lgabench::mobile {
 
@@ -32,7 +32,7 @@ Content read_content(const Scenario&, const JsonReader& file, const JsonReader* 
   for (const JsonReader& type : file.at("distractor_types").elements()) {
     if (natural_textures().count(type.string()) == 0) type.fail("a type of mobile/natural_textures.json");
     const auto& before = content.distractor_types;
-    if (std::find(before.begin(), before.end(), type.string()) != before.end()) type.fail("each object type once");
+    if (contains(before, type.string())) type.fail("each object type once");
     content.distractor_types.push_back(type.string());
   }
   if (content.distractor_types.empty()) file.at("distractor_types").fail("at least one object type");

@@ -5,16 +5,12 @@
 
 #include <mobile/tables.hpp>
 
+#include <lgabench/core/contains.hpp>
+
 namespace lgabench::mobile {
 namespace {
 
 using Some = std::vector<Features>;
-
-bool holds(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-bool holds(const Some& some, const Features& one) { return std::find(some.begin(), some.end(), one) != some.end(); }
 
 template <typename Is>
 Some those(const Some& some, const Is& is) {
@@ -66,7 +62,7 @@ std::vector<Features> like(const std::vector<Features>& some, const Features& on
 Features one_of(const std::vector<Features>& some, RandomStream& random) {
   std::vector<std::string> types;
   for (const Features& f : some)
-    if (!holds(types, f.type)) types.push_back(f.type);
+    if (!contains(types, f.type)) types.push_back(f.type);
   const std::string type = types[random.below(static_cast<std::uint32_t>(types.size()))];
   const Some of_type = those(some, [&](const Features& f) { return f.type == type; });
   return of_type[random.below(static_cast<std::uint32_t>(of_type.size()))];
@@ -75,7 +71,7 @@ Features one_of(const std::vector<Features>& some, RandomStream& random) {
 std::vector<Features> uniform_others(const std::vector<Features>& may_be, int count, RandomStream& random) {
   Some others;
   while (static_cast<int>(others.size()) < count) {
-    const Some fresh = those(may_be, [&](const Features& f) { return !holds(others, f); });
+    const Some fresh = those(may_be, [&](const Features& f) { return !contains(others, f); });
     others.push_back(one_of(fresh.empty() ? may_be : fresh, random));
   }
   return others;
@@ -84,12 +80,12 @@ std::vector<Features> uniform_others(const std::vector<Features>& may_be, int co
 std::vector<Features> near_others(const std::vector<Features>& may_be, const Features& target, const FeatureSet& meant,
                                   const common::NearMiss& near, int count, RandomStream& random) {
   const Some first = alike(may_be, target, random);
-  const Some free = those(may_be, [&](const Features& f) { return !holds(first, f); });
+  const Some free = those(may_be, [&](const Features& f) { return !contains(first, f); });
   Some nearly = those(free, [&](const Features& f) {
-    const bool type = holds(meant.object_types, f.type);
+    const bool type = contains(meant.object_types, f.type);
     return near.object_types.empty() && near.textures.empty()
-               ? type || holds(meant.textures, f.texture)
-               : holds(near.object_types, f.type) || (type && holds(near.textures, f.texture));
+               ? type || contains(meant.textures, f.texture)
+               : contains(near.object_types, f.type) || (type && contains(near.textures, f.texture));
   });
   Some all;
   if (!first.empty()) all.push_back(first[0]);
@@ -104,7 +100,7 @@ std::vector<Features> near_others(const std::vector<Features>& may_be, const Fea
     all.push_back(first[1]);
   }
   if (all.size() > static_cast<std::size_t>(count)) all.resize(static_cast<std::size_t>(count));
-  const Some fresh = those(may_be, [&](const Features& f) { return !holds(all, f); });
+  const Some fresh = those(may_be, [&](const Features& f) { return !contains(all, f); });
   for (const Features& more : uniform_others(fresh, count - static_cast<int>(all.size()), random)) all.push_back(more);
   return all;
 }

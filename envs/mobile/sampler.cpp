@@ -17,6 +17,8 @@
 #include <mobile/renderer.hpp>
 #include <mobile/tables.hpp>
 
+#include <lgabench/core/contains.hpp>
+
 namespace lgabench::mobile {
 namespace {
 
@@ -25,15 +27,12 @@ constexpr double nearest_first_m = .1, farthest_first_m = .25;  // see Content::
 
 using Names = std::vector<std::string>;
 
-bool has(const Names& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 // A texture that things of the type have in life; of those, one that the distribution holds, if there is one.
 std::string natural_texture(const std::string& type, const Names& held, RandomStream& random) {
   const Names& natural = natural_textures().at(type);
   Names both;
-  std::copy_if(natural.begin(), natural.end(), std::back_inserter(both), [&](const auto& t) { return has(held, t); });
+  std::copy_if(natural.begin(), natural.end(), std::back_inserter(both),
+               [&](const auto& t) { return contains(held, t); });
   return any_of(both.empty() ? held : both, random);
 }
 

@@ -8,6 +8,8 @@
 #include <tabletop/rivals.hpp>
 #include <tabletop/task.hpp>
 
+#include <lgabench/core/contains.hpp>
+
 namespace lgabench::tabletop {
 namespace {
 
@@ -28,8 +30,7 @@ void read_choice(const JsonReader& scenes, const std::string& second, const Feat
   if (content.choice.empty()) reader.fail("at least one object type");
   if (content.choice.size() > most) reader.fail(fmt::format("at most {} object types", most));
   for (const JsonReader& type : reader.elements()) {
-    if (std::find(space.object_types.begin(), space.object_types.end(), type.string()) == space.object_types.end())
-      type.fail("an object type of the feature space");
+    if (!contains(space.object_types, type.string())) type.fail("an object type of the feature space");
     if (std::count(content.choice.begin(), content.choice.end(), type.string()) > 1) type.fail("each object type once");
   }
 }
@@ -46,8 +47,7 @@ void read_members(const JsonReader& scenes, const JsonReader& file, const Scenar
   } else {
     content.members_tested = members.string();
     const std::vector<std::string> known{"seen", "new", "new_decisive", "new_other"};
-    if (std::find(known.begin(), known.end(), content.members_tested) == known.end())
-      members.fail(fmt::format("{}", fmt::join(known, ", ")));
+    if (!contains(known, content.members_tested)) members.fail(fmt::format("{}", fmt::join(known, ", ")));
     if (!file.has("train") || !file.at("train").has("members")) members.fail("\"members\" in \"train\"");
   }
   const long long count = training ? content.members : file.at("train").at("members").integer(1, most);

@@ -7,6 +7,8 @@
 
 #include <common/objects.hpp>
 
+#include <lgabench/core/contains.hpp>
+
 namespace lgabench::tabletop {
 namespace {
 
@@ -53,8 +55,7 @@ Cue read_look(const JsonReader& reader, const Scenario& scenario, const Content&
   const int count = reader.has("count") ? static_cast<int>(reader.at("count").integer(1, most_cues)) : 1;
   if (!reader.has("object_type") && !reader.has("texture")) return {drawn_look(reader, scenario, content), count};
   const auto name = [](const JsonReader& one, const char* what, const std::vector<std::string>& known) {
-    if (std::find(known.begin(), known.end(), one.string()) == known.end())
-      one.fail(fmt::format("{} of the feature space", what));
+    if (!contains(known, one.string())) one.fail(fmt::format("{} of the feature space", what));
     return one.string();
   };
   const std::string type = name(reader.at("object_type"), "an object type", scenario.space.object_types);

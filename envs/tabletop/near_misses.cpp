@@ -7,14 +7,12 @@
 
 #include <lgabench/core/environments.hpp>
 
+#include <lgabench/core/contains.hpp>
+
 namespace lgabench::tabletop {
 namespace {
 
 using Names = std::vector<std::string>;
-
-bool has(const Names& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 // "red swirl" for "red paisley": textures of the same colours in another pattern, which are easily taken for each
 // other.
@@ -24,7 +22,7 @@ Names alike(const std::string& texture, const Names& shown) {
   for (const auto& [one, other] : pairs)
     for (const auto& [from, to] : {std::pair(std::string(one), other), std::pair(std::string(other), one)})
       if (texture.size() > from.size() && texture.compare(texture.size() - from.size(), from.size(), from) == 0)
-        if (const std::string like = texture.substr(0, texture.size() - from.size()) + to; has(shown, like))
+        if (const std::string like = texture.substr(0, texture.size() - from.size()) + to; contains(shown, like))
           all.push_back(like);
   return all;
 }
@@ -33,7 +31,7 @@ Names alike(const std::string& texture, const Names& shown) {
 struct LeftOut {
   LeftOut(const Names& shown, const Names& meant, const Names& called_near) {
     for (const std::string& name : shown)
-      if (!has(meant, name)) (called_near.empty() || has(called_near, name) ? near : others).push_back(name);
+      if (!contains(meant, name)) (called_near.empty() || contains(called_near, name) ? near : others).push_back(name);
   }
 
   bool suffices(std::size_t count) const { return !near.empty() && near.size() + others.size() >= count; }

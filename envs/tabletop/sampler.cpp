@@ -13,6 +13,8 @@
 #include <tabletop/rivals.hpp>
 #include <tabletop/task.hpp>
 
+#include <lgabench/core/contains.hpp>
+
 namespace lgabench::tabletop {
 namespace {
 
@@ -43,9 +45,7 @@ bool is_letter(const std::string& type) { return type.rfind("letter ", 0) == 0; 
 std::vector<std::pair<std::size_t, std::size_t>> outside(const FeatureSpace& space,
                                                          const std::vector<const FeatureSet*>& sets,
                                                          const std::vector<bool>& type_allowed) {
-  const auto has = [](const std::vector<std::string>& names, const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
+  const auto has = [](const std::vector<std::string>& names, const std::string& name) { return contains(names, name); };
   std::vector<std::vector<bool>> in_textures;  // of each set
   for (const FeatureSet* set : sets) {
     in_textures.emplace_back();

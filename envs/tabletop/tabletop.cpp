@@ -8,6 +8,7 @@
 
 #include <common/changed.hpp>
 #include <common/objects.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
 #include <tabletop/content.hpp>
@@ -177,7 +178,7 @@ class TabletopType final : public EnvironmentType {
       for (const Layout& layout : task->layouts()) info.layouts.push_back(layout.id);
       if (const auto second = task->second()) info.second = *second;
       for (const std::string& word : info.failures)
-        if (std::find(failures_.begin(), failures_.end(), word) == failures_.end()) failures_.push_back(word);
+        if (!contains(failures_, word)) failures_.push_back(word);
       tasks_.push_back(std::move(info));
     }
     failures_.emplace_back(failure::left_workspace);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <lgabench/abstraction/scenes.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 
 namespace lgabench {
@@ -40,9 +41,8 @@ bool is_disputed(const DisputedPairs& pairs, const Scenario& scenario, const Sce
       ids.push_back(object.instance_id);
   if (ids.empty()) return false;
   const Observation seen = find_environment(scenario.environment).draw(scene, view_of(scenario, scene));
-  return std::any_of(seen.instances.begin(), seen.instances.end(), [&](const Instance& one) {
-    return one.pixels > 0 && std::find(ids.begin(), ids.end(), one.id) != ids.end();
-  });
+  return std::any_of(seen.instances.begin(), seen.instances.end(),
+                     [&](const Instance& one) { return one.pixels > 0 && contains(ids, one.id); });
 }
 
 }  // namespace lgabench

@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/error.hpp>
 
 namespace lgabench {
@@ -64,7 +65,7 @@ std::vector<Statement> statements_of(const std::vector<Word>& words) {
 
 bool is_condition(const std::string& word) {
   constexpr std::array conditions{"if", "or", "unless", "but", "maybe", "depending", "depends"};
-  return std::find(conditions.begin(), conditions.end(), word) != conditions.end();
+  return contains(conditions, word);
 }
 
 // What stands after the thoughts of a model that marks them.

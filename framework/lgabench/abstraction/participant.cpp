@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 
@@ -33,11 +34,10 @@ void read_answer(const JsonReader& reader, Participant& participant) {
   reader.only({"scenario", "command", "asked_as", "specified", "edited"});
   const std::string id = reader.at("scenario").string(), utterance = reader.at("command").string();
   const std::vector<std::string> ids = scenario_ids();
-  if (std::find(ids.begin(), ids.end(), id) == ids.end())
-    reader.at("scenario").fail(fmt::format("one of {}", fmt::join(ids, ", ")));
+  if (!contains(ids, id)) reader.at("scenario").fail(fmt::format("one of {}", fmt::join(ids, ", ")));
   const Scenario scenario = load_scenario(id);
   const std::vector<std::string> utterances = scenario.utterances();
-  if (std::find(utterances.begin(), utterances.end(), utterance) == utterances.end())
+  if (!contains(utterances, utterance))
     reader.at("command").fail(fmt::format("one of \"{}\"", fmt::join(utterances, "\", \"")));
 
   const std::string asked_as = reader.has("asked_as") ? reader.at("asked_as").string() : utterance;

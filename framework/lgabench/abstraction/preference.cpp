@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/terminal.hpp>
 
 namespace lgabench {
@@ -18,8 +19,7 @@ constexpr double sure = .95;  // that a person does what they prefer
 std::vector<bool> pairs_of(const Meaning& meaning, const FeatureSpace& space) {
   const auto held = [](const std::vector<std::string>& names, const std::vector<std::string>& of_space) {
     std::vector<bool> all;
-    for (const std::string& name : of_space)
-      all.push_back(!is_place(name) && std::find(names.begin(), names.end(), name) != names.end());
+    for (const std::string& name : of_space) all.push_back(!is_place(name) && contains(names, name));
     return all;
   };
   std::vector<bool> pairs(space.object_types.size() * space.textures.size(), false);
@@ -104,7 +104,7 @@ void Preference::took(const Observation& seen, std::uint8_t instance) {
     for (const Placed& one : visible)
       if (is_place(one.instance.object_type))
         held.erase(std::remove(held.begin(), held.end(), one.instance.id), held.end());
-    const bool holds = std::find(held.begin(), held.end(), instance) != held.end();
+    const bool holds = contains(held, instance);
     logs_[i] +=
         holds ? std::log(sure / static_cast<double>(held.size())) : std::log((1 - sure) / static_cast<double>(in_view));
   }

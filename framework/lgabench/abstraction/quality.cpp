@@ -6,13 +6,14 @@
 #include <cmath>
 #include <set>
 
+#include <lgabench/core/contains.hpp>
+
 namespace lgabench {
 namespace {
 
 NameQuality quality_of(const std::vector<std::string>& selected, const std::vector<std::string>& truth) {
-  const auto right = std::count_if(selected.begin(), selected.end(), [&](const std::string& name) {
-    return std::find(truth.begin(), truth.end(), name) != truth.end();
-  });
+  const auto right =
+      std::count_if(selected.begin(), selected.end(), [&](const std::string& name) { return contains(truth, name); });
   const auto share = [right](std::size_t of) {
     return of == 0 ? std::nullopt : std::optional(static_cast<double>(right) / static_cast<double>(of));
   };

@@ -3,10 +3,10 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <utility>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
@@ -29,7 +29,7 @@ const SeeingLibrary& library() {
 
 bool is_read(const std::string& names) {
   const std::vector<std::string>& all = names_read();
-  return std::find(all.begin(), all.end(), names) != all.end();
+  return contains(all, names);
 }
 
 bool balances(const std::string& names) { return names == "read_balanced" || names == "read_robust"; }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <lgabench/abstraction/scenes.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 
 namespace lgabench {
@@ -35,7 +36,7 @@ void add_scene(const Scene& scene, const Observation& seen, const Meaning& selec
     const auto instance = std::find_if(seen.instances.begin(), seen.instances.end(),
                                        [&](const Instance& one) { return one.id == object.instance_id; });
     if (instance == seen.instances.end() || instance->pixels == 0) continue;
-    const bool is_kept = std::find(kept.begin(), kept.end(), object.instance_id) != kept.end();
+    const bool is_kept = contains(kept, object.instance_id);
     const bool is_meant = object.role == role::target;
     score.kept += is_kept;
     score.meant += is_meant;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/random.hpp>
 
 namespace lgabench {
@@ -11,18 +12,14 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-bool has(const Names& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 // Of all names in their order, those that are selected after errors.
 Names erring(const Names& all, const Names& selected, const Names& truth, const SelectionErrors& errors,
              RandomStream& random) {
   Names some;
   for (const std::string& name : all) {
     const double drawn = random.uniform();  // for every name, so that no other's depends on what was selected
-    const bool right = has(truth, name);
-    if (drawn < (right ? errors.missing : errors.added) ? !right : has(selected, name)) some.push_back(name);
+    const bool right = contains(truth, name);
+    if (drawn < (right ? errors.missing : errors.added) ? !right : contains(selected, name)) some.push_back(name);
   }
   return some;
 }

@@ -19,6 +19,7 @@
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cell/runs_below.hpp>
 #include <lgabench/cell/steps.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/scenario.hpp>
@@ -76,7 +77,7 @@ class TruthfulModel : public LanguageModel {
     for (const Question& question : questions) {
       const FeatureSet& set = question.about == Question::About::target ? truth.target.product() : truth.second.value();
       const auto& names = question.group == Question::Group::object_type ? set.object_types : set.textures;
-      answers.push_back(std::find(names.begin(), names.end(), question.candidate) != names.end());
+      answers.push_back(contains(names, question.candidate));
     }
     return answers;
   }

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include <lgabench/cell/hdf5.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>
@@ -30,9 +31,8 @@ void turn(Action& action, const std::vector<std::size_t>& rotation, double by_ra
 // Number by number: sigma 1 is half of a number's range, and half a turn.
 Action disturbed(const ActionSpace& space, Action action, double sigma, RandomStream& stream) {
   for (std::size_t i = 0; i < action.size(); ++i) {
-    const auto rotation = std::find_if(space.rotations.begin(), space.rotations.end(), [&](const auto& rotation_of) {
-      return std::find(rotation_of.begin(), rotation_of.end(), i) != rotation_of.end();
-    });
+    const auto rotation = std::find_if(space.rotations.begin(), space.rotations.end(),
+                                       [&](const auto& rotation_of) { return contains(rotation_of, i); });
     if (rotation == space.rotations.end())
       action[i] += (space.numbers[i].high - space.numbers[i].low) / 2 * sigma * stream.gaussian();
     else if (rotation->front() == i)

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <lgabench/cell/runs_below.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/host/hosted_perturbation.hpp>
@@ -24,10 +25,6 @@ const PluginInfo& plugin_of(const PerturbationAxis& axis, const CellJob& job) {
     throw PluginError(fmt::format("perturbation {}: {} declares {}, the scenario {}", axis.id, found->file.string(),
                                   canonical(found->axis), canonical(axis_json(axis))));
   return *found;
-}
-
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 }  // namespace

@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <memory>
 #include <set>
 
 #include <lgabench/cli/causes.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/terminal.hpp>
 
 namespace lgabench::cli {
@@ -33,7 +33,7 @@ std::vector<Recorded> wanted_cells(const AttributeArguments& a, const RunRecord&
   for (const Recorded& recorded : inventory.cells) {
     const std::string& row = recorded.cell.method.name;
     rows.insert(row);
-    if (a.rows.empty() || std::find(a.rows.begin(), a.rows.end(), row) != a.rows.end()) chosen.push_back(recorded);
+    if (a.rows.empty() || contains(a.rows, row)) chosen.push_back(recorded);
   }
   for (const std::string& row : a.rows)
     if (rows.count(row) == 0)

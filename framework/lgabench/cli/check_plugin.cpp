@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -13,6 +12,7 @@
 #include <lgabench/cli/findings.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/colour.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/scratch.hpp>
@@ -96,12 +96,11 @@ std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
                      "take another: of two with one id the later is refused");
 
   const std::vector<std::string> own = perturbation_ids({});
-  if (plugin.kind == "perturbation" && std::find(own.begin(), own.end(), plugin.id) != own.end())
+  if (plugin.kind == "perturbation" && contains(own, plugin.id))
     report.problem("id", fmt::format("{} is an axis of lgabench's own", plugin.id),
                    "take another: it would be refused");
   const std::vector<std::string>& readers = names_read();
-  if (plugin.kind == "perceiver" &&
-      (plugin.id == Reading::simulator || std::find(readers.begin(), readers.end(), plugin.id) != readers.end()))
+  if (plugin.kind == "perceiver" && (plugin.id == Reading::simulator || contains(readers, plugin.id)))
     report.problem("id", fmt::format("{} is a word of --names", plugin.id), "take another: it would never be asked");
 
   const Scratch scratch("check");

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include <lgabench/cli/run_plan.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/run_directory.hpp>
@@ -33,7 +34,7 @@ Words run_words() {
   Words words{"run"};
   for (std::size_t i = 2; i < typed.size(); ++i) {
     const std::string option = typed[i].substr(0, typed[i].find('='));
-    if (std::find(own_options.begin(), own_options.end(), option) == own_options.end())
+    if (!contains(own_options, option))
       words.push_back(typed[i]);
     else
       i += option == typed[i];

@@ -6,6 +6,7 @@
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/picture.hpp>
 #include <lgabench/cli/gallery.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/harness/expand.hpp>
@@ -180,7 +181,7 @@ Sheet gallery(const std::string& what) {
   const std::vector<std::string> environments = environment_ids();
   const bool words = what == "words";
   const std::string environment = words || what == "scenes" ? "tabletop" : what;
-  if (std::find(environments.begin(), environments.end(), environment) != environments.end()) {
+  if (contains(environments, environment)) {
     for (const std::string& id : scenario_ids()) {
       const Scenario scenario = load_scenario(id);
       if (scenario.environment != environment || id.rfind("drawn_", 0) == 0) continue;  // a hundred of one grammar

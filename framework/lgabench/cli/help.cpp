@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/error.hpp>
 
 namespace lgabench::cli {
@@ -105,16 +106,13 @@ void Verb::add(CLI::Option& option, Mark mark) {
 }
 
 void expect_options_of(const CLI::App& verb, const std::string& action, const std::vector<std::string>& actions) {
-  const auto is_action = [&](const std::string& word) {
-    return std::find(actions.begin(), actions.end(), word) != actions.end();
-  };
+  const auto is_action = [&](const std::string& word) { return contains(actions, word); };
   for (const CLI::Option* option : verb.get_options()) {
     if (option->count() == 0 || !option->nonpositional()) continue;
     const std::string text = option->get_description(), begin = text.substr(0, text.find(':'));
     std::vector<std::string> words = CLI::detail::split(begin, ',');
     for (std::string& word : words) CLI::detail::trim(word);
-    if (std::all_of(words.begin(), words.end(), is_action) &&
-        std::find(words.begin(), words.end(), action) == words.end())
+    if (std::all_of(words.begin(), words.end(), is_action) && !contains(words, action))
       throw InputError(fmt::format("{} {}: {} is an option of {}", verb.get_name(), action, option->get_name(), begin));
   }
 }

@@ -7,6 +7,7 @@
 
 #include <lgabench/abstraction/selection_text.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/perturbations.hpp>
@@ -152,9 +153,7 @@ Json to_json(const PerturbationAxis& axis) {
   return json;
 }
 
-bool known(const std::vector<std::string>& ids, const std::string& id) {
-  return std::find(ids.begin(), ids.end(), id) != ids.end();
-}
+bool known(const std::vector<std::string>& ids, const std::string& id) { return contains(ids, id); }
 
 void info(const std::string& name, bool json, const std::vector<fs::path>& directories, const std::string& python) {
   const Catalogue catalogue = plugins_at(directories, python);

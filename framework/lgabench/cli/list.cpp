@@ -8,6 +8,7 @@
 
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/perturbations.hpp>
@@ -197,9 +198,7 @@ std::vector<std::string> common_layouts(const std::vector<Scenario>& scenarios) 
   for (const Scenario& one : scenarios) {
     const std::vector<std::string> there = layouts_of(one);
     common.erase(std::remove_if(common.begin(), common.end(),
-                                [&there](const std::string& layout) {
-                                  return std::find(there.begin(), there.end(), layout) == there.end();
-                                }),
+                                [&there](const std::string& layout) { return !contains(there, layout); }),
                  common.end());
   }
   return common;

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include <lgabench/cli/new_scenario.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
@@ -53,7 +54,7 @@ bool has_answers(const std::vector<std::string>& scenarios) {
 std::string layout_of(const std::vector<Scenario>& scenarios) {
   const std::vector<std::string> common = common_layouts(scenarios);
   if (common.empty()) throw InputError("--scenarios: expected scenarios that have a layout in common");
-  return std::find(common.begin(), common.end(), "continuous") == common.end() ? common.front() : "continuous";
+  return !contains(common, "continuous") ? common.front() : "continuous";
 }
 
 Json suite_json(const NewSuiteArguments& a, const std::vector<Scenario>& scenarios, bool answered) {

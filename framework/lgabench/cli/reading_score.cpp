@@ -11,6 +11,7 @@
 #include <lgabench/abstraction/reading.hpp>
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/picture.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/core/suggest.hpp>
@@ -161,17 +162,16 @@ void expect_known(const Suite& suite, Truth truth, const ReadingArguments& a) {
   known.insert(known.end(), names_read().begin(), names_read().end());
   known.emplace_back(looked);
   for (const std::string& one : a.names)
-    if (std::find(known.begin(), known.end(), one) == known.end())
+    if (!contains(known, one))
       throw InputError(fmt::format("--names: {}, and no plugin's", none_named("names", one, known)));
   for (const std::string& one : a.segments)
     if (one != Reading::simulator && one != Reading::difference)
       throw InputError("--segments: " + none_named("segments", one, {Reading::simulator, Reading::difference}));
   for (const std::string& id : suite_scenario_ids(suite, suite.design))
     for (const Arm& arm : suite_scenario(suite, id, truth).tests)
-      if (std::find(arms.begin(), arms.end(), arm.id) == arms.end()) arms.push_back(arm.id);
+      if (!contains(arms, arm.id)) arms.push_back(arm.id);
   for (const std::string& one : a.arms)
-    if (std::find(arms.begin(), arms.end(), one) == arms.end())
-      throw InputError("--arms: " + none_named("arm", one, arms));
+    if (!contains(arms, one)) throw InputError("--arms: " + none_named("arm", one, arms));
 }
 
 }  // namespace
@@ -199,7 +199,7 @@ void print_reading_scores(const Suite& suite, Truth truth, const ReadingArgument
         const ReadPicture read = reading_of(scenario, by_reader);
         const EnvironmentType& environment = find_environment(scenario.environment);
         for (const Arm& arm : scenario.tests) {
-          if (!a.arms.empty() && std::find(a.arms.begin(), a.arms.end(), arm.id) == a.arms.end()) continue;
+          if (!a.arms.empty() && !contains(a.arms, arm.id)) continue;
           auto row = std::find_if(arms.begin(), arms.end(), [&](const auto& one) { return one.first == arm.id; });
           if (row == arms.end()) row = arms.insert(arms.end(), {arm.id, {}});
           const Perception perceived = perception_of(scenario, arm);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <set>
 
 #include <lgabench/abstraction/asked_model.hpp>
@@ -11,6 +10,7 @@
 #include <lgabench/abstraction/prompt.hpp>
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/cli/cache.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -116,7 +116,7 @@ void expect_layouts(const Suite& suite, const Words& layouts) {
     for (const std::string& layout : layouts_of(load_scenario(id))) there.insert(layout);
   const Words all = installed_layouts();
   for (const std::string& layout : layouts)
-    if (std::find(all.begin(), all.end(), layout) == all.end())
+    if (!contains(all, layout))
       throw InputError("--layout: " + none_named("layout", layout, {there.begin(), there.end()}));
 }
 

@@ -19,6 +19,7 @@
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/reading_score.hpp>
 #include <lgabench/cli/select_score.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -225,7 +226,7 @@ void select(const Asked& asked, LanguageModel* answering, const SelectArguments&
 }
 
 // Whether who answers is asked about pictures.
-bool looks(const SelectArguments& a) { return std::find(a.names.begin(), a.names.end(), looked) != a.names.end(); }
+bool looks(const SelectArguments& a) { return contains(a.names, looked); }
 
 void score_reading(const SelectArguments& a) {
   const Answerer answerer = looks(a) ? make_answerer(a) : Answerer();

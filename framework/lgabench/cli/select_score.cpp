@@ -10,6 +10,7 @@
 #include <lgabench/abstraction/best_product.hpp>
 #include <lgabench/abstraction/scene_score.hpp>
 #include <lgabench/abstraction/select_features.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/rounding.hpp>
@@ -61,7 +62,7 @@ std::string arm_of(const Scenario& scenario, int command) {
   if (std::none_of(scenario.commands.begin(), scenario.commands.end(), names)) return "";
   for (const Arm& arm : scenario.tests) {
     const std::vector<int> given = scenario.commands_of(arm.id);
-    if (std::find(given.begin(), given.end(), command) != given.end()) return arm.id;
+    if (contains(given, command)) return arm.id;
   }
   return "";
 }
@@ -124,8 +125,7 @@ void print_coverage(const std::vector<Covered>& all, const Groups& groups, bool 
   for (const auto& [group, scenarios] : groups) {
     int commands = 0, with_truth = 0;
     for (const Covered& one : all)
-      if (std::find(scenarios.begin(), scenarios.end(), one.scenario) != scenarios.end())
-        ++commands, with_truth += one.holds_truth;
+      if (contains(scenarios, one.scenario)) ++commands, with_truth += one.holds_truth;
     if (json && commands > 0)
       to_stdout(
           "{}\n",
@@ -210,9 +210,8 @@ void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const 
   using InGroup = std::function<bool(const ScoredCommand&)>;
   std::vector<std::pair<std::string, InGroup>> groups;
   for (const auto& [name, scenarios] : families)
-    groups.emplace_back(name, [list = scenarios](const ScoredCommand& command) {
-      return std::find(list.begin(), list.end(), command.scenario) != list.end();
-    });
+    groups.emplace_back(name,
+                        [list = scenarios](const ScoredCommand& command) { return contains(list, command.scenario); });
   bool by_arm = false;
   for (const ScoredCommand& command : by_asking.at("named").commands) {
     const auto same = [&command](const auto& group) { return group.first == command.arm; };

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <lgabench/cli/help.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/scenario_files.hpp>
@@ -93,7 +94,7 @@ std::vector<std::string> common_layouts(const std::vector<Scenario>& scenarios);
 inline CLI::Validator one_of(std::string what, std::vector<std::string> known) {
   return CLI::Validator(
       [what = std::move(what), known = std::move(known)](const std::string& word) {
-        const bool is_known = std::find(known.begin(), known.end(), word) != known.end();
+        const bool is_known = contains(known, word);
         return is_known ? std::string() : none_named(what, word, known);
       },
       "", "");

@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/suggest.hpp>
 
@@ -27,7 +28,7 @@ const EnvironmentType* load(const std::string& id) {
 
 void append_new(std::vector<std::string>& words, const std::vector<std::string>& more) {
   for (const std::string& word : more)
-    if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
+    if (!contains(words, word)) words.push_back(word);
 }
 
 }  // namespace
@@ -56,7 +57,7 @@ std::vector<std::string> environment_ids() {
 
 const EnvironmentType& find_environment(const std::string& id) {
   const std::vector<std::string> ids = environment_ids();
-  if (std::find(ids.begin(), ids.end(), id) == ids.end()) throw InputError(none_named("environment", id, ids));
+  if (!contains(ids, id)) throw InputError(none_named("environment", id, ids));
   static std::mutex mutex;
   static std::map<std::string, const EnvironmentType*> loaded;
   const std::lock_guard lock(mutex);

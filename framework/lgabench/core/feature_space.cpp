@@ -1,15 +1,10 @@
 #include <lgabench/core/feature_space.hpp>
 
-#include <algorithm>
-
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/files.hpp>
 
 namespace lgabench {
 namespace {
-
-bool has(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 std::vector<std::string> read_names(const JsonReader& reader, const std::vector<std::string>& space) {
   if (reader.json() == "ALL") return space;
@@ -18,13 +13,13 @@ std::vector<std::string> read_names(const JsonReader& reader, const std::vector<
   std::vector<std::string> named;
   for (const JsonReader& element : (except ? reader.at("except") : reader).elements()) {
     const std::string name = element.string();
-    if (!has(space, name)) element.fail("a name of the feature space");
-    if (has(named, name)) element.fail("each name once");
+    if (!contains(space, name)) element.fail("a name of the feature space");
+    if (contains(named, name)) element.fail("each name once");
     named.push_back(name);
   }
   std::vector<std::string> ordered;
   for (const std::string& name : space)
-    if (has(named, name) != except) ordered.push_back(name);
+    if (contains(named, name) != except) ordered.push_back(name);
   return ordered;
 }
 
@@ -38,7 +33,7 @@ FeatureSpace load_feature_space(const std::string& id) {
 }
 
 bool FeatureSet::contains(const std::string& object_type, const std::string& texture) const {
-  return has(object_types, object_type) && has(textures, texture);
+  return lgabench::contains(object_types, object_type) && lgabench::contains(textures, texture);
 }
 
 bool operator==(const FeatureSet& a, const FeatureSet& b) {

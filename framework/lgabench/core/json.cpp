@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/suggest.hpp>
 
@@ -184,7 +185,7 @@ long long JsonReader::integer(long long lowest, long long highest) const {
 void JsonReader::only(const std::vector<std::string>& known) const {
   if (!value_.is_object()) fail("an object");
   for (const auto& item : value_.items())
-    if (std::find(known.begin(), known.end(), item.key()) == known.end())
+    if (!contains(known, item.key()))
       throw InputError(fmt::format("{}: {}: unknown member \"{}\"{}, expected one of: {}", file_,
                                    place_.empty() ? "/" : place_, item.key(), suggestion(item.key(), known),
                                    fmt::join(known, ", ")));

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <utility>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/error.hpp>
 
 namespace lgabench {
@@ -74,9 +75,7 @@ Meaning read_meaning(const JsonReader& reader, const ReadSet& read_set) {
 }
 
 bool all_in(const std::vector<std::string>& names, const std::vector<std::string>& space) {
-  return std::all_of(names.begin(), names.end(), [&space](const std::string& name) {
-    return std::find(space.begin(), space.end(), name) != space.end();
-  });
+  return std::all_of(names.begin(), names.end(), [&space](const std::string& name) { return contains(space, name); });
 }
 
 double distance(const Placed& a, const Placed& b) { return std::hypot(a.row - b.row, a.column - b.column); }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/suggest.hpp>
@@ -59,9 +60,7 @@ std::vector<EpisodePart> perceived_parts(const JsonReader& list) {
 }  // namespace
 
 bool PerturbationAxis::touches(EpisodePart part) const {
-  const auto has = [](const std::vector<EpisodePart>& some, EpisodePart one) {
-    return std::find(some.begin(), some.end(), one) != some.end();
-  };
+  const auto has = [](const std::vector<EpisodePart>& some, EpisodePart one) { return contains(some, one); };
   if (part != EpisodePart::input) return has(changes, part) || has(may_change, part);
   for (const EpisodePart of_input :
        {EpisodePart::rgb, EpisodePart::ids, EpisodePart::instances, EpisodePart::words, EpisodePart::selection})
@@ -87,7 +86,7 @@ const PluginAxes& plugin_axes() { return added_axes(); }
 
 void add_plugin_axis(PerturbationAxis axis) {
   const std::vector<std::string> taken = perturbation_ids();
-  if (std::find(taken.begin(), taken.end(), axis.id) != taken.end())
+  if (contains(taken, axis.id))
     throw InputError(fmt::format("perturbation \"{}\": an axis has that id already", axis.id));
   added_axes().push_back(std::make_shared<PerturbationAxis>(std::move(axis)));
 }
@@ -177,7 +176,7 @@ std::vector<BodyVariant> body_variants(const Scenario& scenario) {
   for (const BodyVariants& of_arm : bodies_of_arms(scenario))
     for (const double scale : of_arm.scales) {
       const BodyVariant one{scale, of_arm.friction, of_arm.mass};
-      if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
+      if (!contains(all, one)) all.push_back(one);
     }
   return all;
 }

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <functional>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/perturbations.hpp>
@@ -191,8 +192,7 @@ void read_answers(const JsonReader& reader, Scenario& scenario) {
   std::error_code none_to_list;
   const std::vector<std::string> known = json_names(data_directory() / "answers", none_to_list);
   const auto file = [&known](const JsonReader& name) {
-    if (std::find(known.begin(), known.end(), name.string()) == known.end())
-      name.fail(fmt::format("one of: {}", fmt::join(known, ", ")));
+    if (!contains(known, name.string())) name.fail(fmt::format("one of: {}", fmt::join(known, ", ")));
     return name.string();
   };
   scenario.recorded = file(reader.at("recorded"));

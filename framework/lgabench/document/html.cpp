@@ -6,6 +6,7 @@
 #include <cctype>
 #include <set>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/filled.hpp>
 #include <lgabench/document/writers.hpp>
 
@@ -95,8 +96,7 @@ std::vector<std::string> repeated(const Grid& grid) {
   if (grid.rows.size() < 2) return words;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const TableCell& first = grid.rows.front().cells[i];
-    const bool of_settings =
-        std::find(settings_heads.begin(), settings_heads.end(), grid.heads[i].text()) != settings_heads.end();
+    const bool of_settings = contains(settings_heads, grid.heads[i].text());
     const bool plain = of_settings && !first.style && !first.episodes && first.bar_of == 0 && !first.text().empty() &&
                        !first.spans.front().numeric;
     if (plain && std::all_of(grid.rows.begin(), grid.rows.end(),
@@ -110,7 +110,7 @@ std::vector<std::string> repeated(const Grid& grid) {
 std::string legend_html(const Grid& grid) {
   std::vector<std::pair<std::string, std::string>> all;
   const auto add = [&all](const std::string& symbol, const std::string& meaning) {
-    if (std::find(all.begin(), all.end(), std::pair(symbol, meaning)) == all.end()) all.emplace_back(symbol, meaning);
+    if (!contains(all, std::pair(symbol, meaning))) all.emplace_back(symbol, meaning);
   };
   for (const Grid::Row& row : grid.rows)
     for (const TableCell& cell : row.cells)

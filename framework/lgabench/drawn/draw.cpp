@@ -7,6 +7,7 @@
 #include <set>
 
 #include <lgabench/abstraction/scenes.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 
 namespace lgabench::drawn {
@@ -20,7 +21,7 @@ Json names_of(const std::vector<std::string>& names, const std::vector<std::stri
   if (3 * names.size() <= 2 * space.size()) return names;
   std::vector<std::string> others;
   for (const std::string& name : space)
-    if (std::find(names.begin(), names.end(), name) == names.end()) others.push_back(name);
+    if (!contains(names, name)) others.push_back(name);
   return {{"except", others}};
 }
 

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/meaning.hpp>
 
 namespace lgabench::drawn {
 namespace {
 
 Holds held(const std::string& name, const std::vector<std::string>& yes, const std::vector<std::string>& undecided) {
-  const auto in = [&name](const std::vector<std::string>& names) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
+  const auto in = [&name](const std::vector<std::string>& names) { return contains(names, name); };
   return in(yes) ? Holds::yes : in(undecided) ? Holds::undecided : Holds::no;
 }
 
@@ -54,7 +53,7 @@ Extent where(Extent extent, Holds value) {
   return extent;
 }
 
-bool is_empty(const Extent& extent) { return std::find(extent.begin(), extent.end(), Holds::yes) == extent.end(); }
+bool is_empty(const Extent& extent) { return !contains(extent, Holds::yes); }
 
 std::vector<FeatureSet> sets_of(const FeatureSpace& space, const Extent& extent, Holds value) {
   std::vector<FeatureSet> sets;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/drawn/phrases.hpp>
 
@@ -88,9 +89,7 @@ struct Grammar {
 // The order's names that things may have which are meant; nothing where these have others, or all the same.
 std::optional<std::vector<std::string>> order_within(const std::vector<std::string>& order,
                                                      const std::vector<FeatureSet>& sets, const FeatureSpace& space) {
-  const auto in = [](const std::vector<std::string>& names, const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
+  const auto in = [](const std::vector<std::string>& names, const std::string& name) { return contains(names, name); };
   const bool textures =
       std::all_of(order.begin(), order.end(), [&](const auto& name) { return in(space.textures, name); });
   std::vector<std::string> within;
@@ -120,8 +119,7 @@ std::optional<DrawnCommand> command(const FeatureSpace& space, const Phrase& phr
     const Extent wrong = both(where(near, Holds::yes), others);
     if (is_empty(wrong)) return {};
     for (FeatureSet& set : sets_of(space, wrong, Holds::yes))
-      if (std::find(made.near_misses.begin(), made.near_misses.end(), set) == made.near_misses.end())
-        made.near_misses.push_back(std::move(set));
+      if (!contains(made.near_misses, set)) made.near_misses.push_back(std::move(set));
   }
   if (!rule) return made;
   Which& which = rule->which;

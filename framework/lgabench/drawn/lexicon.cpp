@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/meaning.hpp>
 
@@ -10,10 +11,6 @@ namespace lgabench::drawn {
 namespace {
 
 using Names = std::vector<std::string>;
-
-bool has(const Names& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 // In the order of the space.
 Names read_names(const JsonReader& reader, const Names& space) {
@@ -33,7 +30,7 @@ Names read_names(const JsonReader& reader, const Names& space) {
 Names without(const Names& names, const Names& others) {
   Names rest;
   for (const std::string& name : names)
-    if (!has(others, name)) rest.push_back(name);
+    if (!contains(others, name)) rest.push_back(name);
   return rest;
 }
 
@@ -46,7 +43,7 @@ Sets read_sets(const JsonReader& entry, const char* members, const Names& space)
   if (sets.members.empty()) entry.at(members).fail("at least one name");
   if (entry.has("undecided")) sets.undecided = read_names(entry.at("undecided"), space);
   for (const std::string& name : sets.undecided)
-    if (has(sets.members, name)) entry.at("undecided").fail("none of the members");
+    if (contains(sets.members, name)) entry.at("undecided").fail("none of the members");
   if (!entry.has("near")) return sets;
   sets.near = without(without(read_names(entry.at("near"), space), sets.members), sets.undecided);
   if (sets.near.empty()) entry.at("near").fail("at least one name that is neither a member nor undecided");
@@ -108,7 +105,8 @@ Lexicon read_lexicon(const Json& json, const std::string& file) {
     order.of_textures = without(order.names, lexicon.space.textures).empty();  // "orange" is a name of both
     const Names& space = order.of_textures ? lexicon.space.textures : lexicon.space.object_types;
     for (const JsonReader& name : entry.at("order").elements()) {
-      if (!has(space, name.string())) name.fail("a name of the feature space: object types alone, or textures alone");
+      if (!contains(space, name.string()))
+        name.fail("a name of the feature space: object types alone, or textures alone");
       if (std::count(order.names.begin(), order.names.end(), name.string()) > 1) name.fail("each name once");
     }
     if (order.names.size() < 2) entry.at("order").fail("at least two names");

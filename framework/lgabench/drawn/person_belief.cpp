@@ -1,16 +1,15 @@
 #include <lgabench/drawn/person_belief.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
+#include <lgabench/core/contains.hpp>
+
 namespace lgabench::drawn {
 namespace {
 
-bool is_in(const std::vector<std::size_t>& all, std::size_t one) {
-  return std::find(all.begin(), all.end(), one) != all.end();
-}
+bool is_in(const std::vector<std::size_t>& all, std::size_t one) { return contains(all, one); }
 
 // Of each answer, how likely the rule makes it: no and yes; or each thing, then none.
 std::vector<double> answers(const PersonRule& rule, const Standing& scene, const std::optional<std::size_t>& one,

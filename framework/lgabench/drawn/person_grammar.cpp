@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/drawn/lexicon.hpp>
 #include <lgabench/drawn/persons.hpp>
 
@@ -15,13 +16,11 @@ using Place = Which::Rule;
 using Names = std::vector<std::string>;
 constexpr std::array<Place, 4> all_places{Place::leftmost, Place::rightmost, Place::nearest_to, Place::farthest_from};
 
-bool is_among(const Names& all, const std::string& one) { return std::find(all.begin(), all.end(), one) != all.end(); }
-
 Names fitting(const JsonReader& patterns, const Names& space) {
   Names found;
   for (const std::string& name : space)
     for (const JsonReader& pattern : patterns.elements())
-      if (fits(pattern.string(), name) && !is_among(found, name)) found.push_back(name);
+      if (fits(pattern.string(), name) && !contains(found, name)) found.push_back(name);
   return found;
 }
 
@@ -46,7 +45,7 @@ PersonGrammar::Hint read_hint(const JsonReader& entry, const PersonGrammar& gram
   PersonGrammar::Hint hint;
   hint.says = entry.at("says").string();
   for (const PersonGrammar::Words& words : grammar.words)
-    if (!entry.has("words") || is_among(entry.at("words").strings(), words.a)) hint.words.push_back(words.a);
+    if (!entry.has("words") || contains(entry.at("words").strings(), words.a)) hint.words.push_back(words.a);
   if (entry.has("words") && hint.words.size() != entry.at("words").strings().size())
     entry.at("words").fail("words of the grammar");
   if (entry.has("types"))
@@ -74,7 +73,7 @@ PersonGrammar::Hint read_hint(const JsonReader& entry, const PersonGrammar& gram
       hint.places.push_back(*found);
     }
   for (std::size_t i = 0; i < grammar.words.size(); ++i) {
-    if (!is_among(hint.words, grammar.words[i].a)) continue;
+    if (!contains(hint.words, grammar.words[i].a)) continue;
     const auto left =
         std::count_if(rules[i].begin(), rules[i].end(), [&](const PersonRule& rule) { return leaves(hint, rule); });
     if (left == 0 || static_cast<std::size_t>(left) == rules[i].size())
@@ -99,7 +98,7 @@ PersonGrammar read_person_grammar(const Json& json, const FeatureSpace& space, c
     entry.only({"a", "types"});
     Names types;
     for (const JsonReader& name : entry.at("types").elements()) {
-      const bool known = is_among(space.object_types, name.string());
+      const bool known = contains(space.object_types, name.string());
       if (!known && own_space) name.fail("an object type of the feature space: a rule would fit no object");
       if (known) types.push_back(name.string());
     }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include <lgabench/core/contains.hpp>
+
 namespace lgabench::drawn {
 namespace {
 
@@ -26,7 +28,7 @@ bool ends_with(const std::string& text, const std::string& end) {
 
 template <class Part>
 bool is_any_of(const std::vector<Part>& parts, const Part& one) {
-  return std::find(parts.begin(), parts.end(), one) != parts.end();
+  return contains(parts, one);
 }
 
 bool belongs(const PersonRule& rule, const Thing& one) { return rule.types[one.type] && rule.textures[one.texture]; }

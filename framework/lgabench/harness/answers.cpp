@@ -11,6 +11,7 @@
 #include <lgabench/abstraction/chat_model.hpp>
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/abstraction/select_features.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 
@@ -145,7 +146,7 @@ void check_forms(const std::vector<Cell>& cells, const Catalogue& catalogue, con
   std::string reason;
   std::vector<std::string> rows, lacking;
   const auto add = [](const std::string& name, std::vector<std::string>& all) {
-    if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+    if (!contains(all, name)) all.push_back(name);
   };
   for (const Cell& cell : cells) {
     if (cell.method.is_reference() || !catalogue.find("method", cell.method.id).questionnaire) continue;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include <lgabench/abstraction/reading.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/scenario.hpp>
@@ -59,9 +60,9 @@ Json to_json(const DesignAxis& axis) {
 TrainOn train_on_of(const JsonReader& reader) {
   const TrainOn through = read_train_on(reader);
   const std::vector<std::string> some = train_on_axes(), all = perturbation_ids();
-  if (std::find(all.begin(), all.end(), through.axis) == all.end())
+  if (!contains(all, through.axis))
     throw InputError(fmt::format("{}: {}: {}", reader.file(), reader.place(), none_named("axis", through.axis, some)));
-  if (std::find(some.begin(), some.end(), through.axis) == some.end())
+  if (!contains(some, through.axis))
     throw InputError(
         fmt::format("{}: {}: expected an axis that changes what is perceived and nothing else ({}), got {}",
                     reader.file(), reader.place(), fmt::join(some, ", "), through.axis));
@@ -78,7 +79,7 @@ const std::vector<std::string> optional_design_members{"test_scenes",   "smoke",
 
 std::string name_among(const JsonReader& element, const char* what, const std::vector<std::string>& known) {
   const std::string name = element.string();
-  if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end())
+  if (!known.empty() && !contains(known, name))
     throw InputError(fmt::format("{}: {}: {}", element.file(), element.place(), none_named(what, name, known)));
   return name;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include <lgabench/abstraction/selection_errors.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/suggest.hpp>
@@ -37,10 +38,6 @@ void expect_each_method(const std::vector<Competitor>& methods, const std::vecto
         }))
       throw InputError(
           fmt::format("--humans: expected answers for {} in a scenario of this run, there are none", method.name));
-}
-
-bool has(const std::vector<std::string>& all, const std::string& one) {
-  return std::find(all.begin(), all.end(), one) != all.end();
 }
 
 // Which members of a meaning are seen is each training seed's own.
@@ -101,7 +98,7 @@ std::vector<Reading> readings_of(const Suite& suite, const Design& design, const
   std::vector<Reading> all;
   for (const std::string& names : design.names.empty() ? simulator : design.names)
     for (const std::string& segments : design.segments.empty() ? simulator : design.segments) {
-      if (!has(known, names))
+      if (!contains(known, names))
         throw InputError(fmt::format("{}: /names: {}", suite.file, none_named("names or perceiver", names, known)));
       all.push_back({names, segments});
     }
@@ -135,7 +132,8 @@ void expect_dynamics(const Scenario& scenario, const PluginInfo& engine) {
 
 bool plays(const PlayedArms& played, const Arm& arm) {
   const std::optional<Perturbation>& one = arm.perturbation;
-  return has(played.arms, arm.id) || std::any_of(played.axes.begin(), played.axes.end(), [&](const DesignAxis& axis) {
+  return contains(played.arms, arm.id) ||
+         std::any_of(played.axes.begin(), played.axes.end(), [&](const DesignAxis& axis) {
            return one && axis.axis == one->axis &&
                   (axis.levels.empty() || std::count(axis.levels.begin(), axis.levels.end(), one->level) > 0);
          });
@@ -144,12 +142,12 @@ bool plays(const PlayedArms& played, const Arm& arm) {
 // What is asked for must be in one of the scenarios.
 void expect_arms(const PlayedArms& played, const SuiteArms& there, const Suite& suite) {
   for (const std::string& arm : played.arms)
-    if (!has(there.ids, arm)) throw InputError("--arms: " + none_named("arm", arm, there.ids));
+    if (!contains(there.ids, arm)) throw InputError("--arms: " + none_named("arm", arm, there.ids));
   std::vector<std::string> axes;
   for (const auto& axis : there.axes) axes.push_back(axis.first);
   for (const DesignAxis& axis : played.axes) {
     if (axes.empty()) throw InputError(fmt::format("--axes: {} has no perturbations here", suite.id));
-    if (!has(axes, axis.axis)) throw InputError("--axes: " + none_named("axis", axis.axis, axes));
+    if (!contains(axes, axis.axis)) throw InputError("--axes: " + none_named("axis", axis.axis, axes));
     const std::set<int>& levels = there.axes.at(axis.axis);
     for (const int level : axis.levels)
       if (levels.count(level) == 0)
@@ -162,7 +160,7 @@ void expect_arms(const PlayedArms& played, const SuiteArms& there, const Suite& 
 void expect_layouts(const Scenario& scenario, const std::vector<std::string>& layouts) {
   const std::vector<std::string> there = layouts_of(scenario);
   for (const std::string& layout : layouts)
-    if (std::find(there.begin(), there.end(), layout) == there.end())
+    if (!contains(there, layout))
       throw InputError(
           fmt::format("scenario {} ({}): {}", scenario.id, scenario.environment, none_named("layout", layout, there)));
 }
@@ -216,7 +214,9 @@ Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, 
   const Json first = json["tests"].front();
   if (suite.only_arms) json["tests"] = Json::array();
   for (const SuiteArm& arm : changes.arms.value_or(suite.arms)) {
-    if (has(arm.except, base) || has(arm.except, id) || (!design.arms.empty() && !has(design.arms, arm.id))) continue;
+    if (contains(arm.except, base) || contains(arm.except, id) ||
+        (!design.arms.empty() && !contains(design.arms, arm.id)))
+      continue;
     json["tests"].push_back(first);
     json["tests"].back().update(arm.members);
     json["tests"].back().update(scenes);
@@ -225,7 +225,7 @@ Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, 
   }
   const Json control = json["tests"].front();
   for (const DesignAxis& axis : design.perturbations) {
-    if (axis.except && has(*axis.except, base)) continue;
+    if (axis.except && contains(*axis.except, base)) continue;
     for (const int level : axis.levels) {
       const Perturbation one{axis.axis, level};
       json["tests"].push_back(control);
@@ -244,7 +244,7 @@ SuiteArms arms_of(const Suite& suite, const Design& design) {
   SuiteArms all;
   for (const std::string& id : suite_scenario_ids(suite, design))
     for (const Arm& arm : suite_scenario(suite, id, Truth::released, &design).tests) {
-      if (!has(all.ids, arm.id)) all.ids.push_back(arm.id);
+      if (!contains(all.ids, arm.id)) all.ids.push_back(arm.id);
       if (arm.perturbation) all.axes[arm.perturbation->axis].insert(arm.perturbation->level);
     }
   return all;
@@ -273,7 +273,7 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
   std::vector<Competitor> references;
   if (variation.references)
     for (const ReferenceRow& row : reference_rows())
-      if (row.in_every_suite || has(suite.references, row.id))
+      if (row.in_every_suite || contains(suite.references, row.id))
         references.push_back({"reference", row.id, row.id, "1", Json::object()});
   std::vector<SelectionErrors> all_errors = design.selection_errors;
   if (all_errors.empty()) all_errors.emplace_back();
@@ -316,7 +316,7 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
           for (const std::uint64_t seed : design.seeds) {
             for (const Competitor& method : methods)
               for (const SelectionErrors& errors : all_errors)
-                if (errors.none() || !has(suite.selects_nothing, method.id))
+                if (errors.none() || !contains(suite.selects_nothing, method.id))
                   for (const Reading& reading : readings) add(method, n, seed, errors, reading);
             for (const Competitor& row : references)
               if (learns(row) && n > 0) add(row, n, seed);

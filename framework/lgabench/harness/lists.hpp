@@ -2,10 +2,10 @@
 #pragma once
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <string>
 #include <vector>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/suggest.hpp>
 
@@ -19,7 +19,7 @@ std::vector<T> distinct_values(const JsonReader& list, Read read) {
   std::vector<T> all;
   for (const JsonReader& element : list.elements()) {
     const T value = read(element);
-    if (std::find(all.begin(), all.end(), value) != all.end()) element.fail("each value once");
+    if (contains(all, value)) element.fail("each value once");
     all.push_back(value);
   }
   if (all.empty()) list.fail("at least one value");

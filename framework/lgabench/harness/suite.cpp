@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/scenario_files.hpp>
@@ -142,7 +143,7 @@ Suite load_suite(const std::string& id) {
   const bool is_file = fs::path(id).extension() == ".json";
   std::error_code none_to_list;
   auto known = json_names(data_directory() / "suites", none_to_list);
-  if (!is_file && std::find(known.begin(), known.end(), id) == known.end()) {
+  if (!is_file && !contains(known, id)) {
     known.emplace_back("or a .json file");
     throw InputError(none_named("suite", id, known));
   }

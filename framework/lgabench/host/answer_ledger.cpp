@@ -6,6 +6,7 @@
 #include <iterator>
 #include <tuple>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/host/messages.hpp>
 
 namespace lgabench {
@@ -21,9 +22,8 @@ bool same_distribution(const Selection& a, const Selection& b) { return a.target
 // Names in the space's order, each once.
 std::vector<std::string> in_order(const std::vector<std::string>& names, const std::vector<std::string>& order) {
   std::vector<std::string> sorted;
-  std::copy_if(order.begin(), order.end(), std::back_inserter(sorted), [&names](const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  });
+  std::copy_if(order.begin(), order.end(), std::back_inserter(sorted),
+               [&names](const std::string& name) { return contains(names, name); });
   return sorted;
 }
 

@@ -21,6 +21,7 @@
 #include <set>
 #include <utility>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/process.hpp>
@@ -78,9 +79,7 @@ std::vector<pid_t>& hosts() {
 // Of the host, and what others left behind: not the other hosts, nor what is below them. A few more than `most` end it.
 // Each is sent the signal, unless that is 0, before its own are looked for.
 std::vector<pid_t> descendants(pid_t host, int signal, std::size_t most = SIZE_MAX) {
-  const auto is_others = [host](pid_t pid) {
-    return pid != host && std::find(hosts().begin(), hosts().end(), pid) != hosts().end();
-  };
+  const auto is_others = [host](pid_t pid) { return pid != host && contains(hosts(), pid); };
   std::vector<pid_t> all = children_of(::getpid());
   all.erase(std::remove_if(all.begin(), all.end(), is_others), all.end());
   for (std::size_t i = 0; i < all.size() && all.size() <= most; ++i) {

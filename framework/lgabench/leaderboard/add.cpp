@@ -9,6 +9,7 @@
 #include <set>
 
 #include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
@@ -52,7 +53,7 @@ Rows rows_of(const RunResults& run, const std::vector<std::string>& wanted) {
   std::set<std::string> names;
   for (const CellResult& result : run.cells) {
     names.insert(result.method);
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), result.method) == wanted.end()) continue;
+    if (!wanted.empty() && !contains(wanted, result.method)) continue;
     const Place place{result.scenario, result.layout, result.demonstrations, result.configuration.training_seed};
     rows[{result.method, result.engine}][place] = &result;
   }
@@ -299,7 +300,7 @@ Added add_run(const fs::path& board, const fs::path& directory, const Json& abou
     if (!fs::exists(board / entry.place())) continue;
     Entry there = read_entry(board, entry.place());
     const Json evidence = entry.evidence.front();
-    const bool is_there = std::find(there.evidence.begin(), there.evidence.end(), evidence) != there.evidence.end();
+    const bool is_there = contains(there.evidence, evidence);
     if (const int differing = other_cells(there, entry))
       reasons.add(fmt::format("{}: this identity is on the board, with other outcomes in {} of {} cells",
                               entry.place().string(), differing, there.cells.size()));

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <functional>
 #include <limits>
 #include <map>
 
 #include <lgabench/abstraction/scene_score.hpp>
 #include <lgabench/abstraction/select_features.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/answers.hpp>
@@ -52,7 +52,7 @@ Json scored(const Installed& installed, const std::string& asked, Answerer answe
     if (total.commands > 0) groups[group] = to_json(total);
   };
   for (const auto& [group, ids] : installed.suite.groups)
-    sum(group, [&ids = ids](const std::string& id) { return std::find(ids.begin(), ids.end(), id) != ids.end(); });
+    sum(group, [&ids = ids](const std::string& id) { return contains(ids, id); });
   sum(all, [](const std::string&) { return true; });
   for (const auto& [id, one] : by_scenario)
     if (one.exact_scenes < one.scenes)

@@ -1,7 +1,6 @@
 #include <lgabench/leaderboard/areas.hpp>
 
-#include <algorithm>
-
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/statistics/curves.hpp>
@@ -53,7 +52,7 @@ std::vector<std::string> axes_of(const Setting& setting) {
   for (const Setting::Scenario& scenario : setting.scenarios)
     for (const std::string& arm : scenario.arms)
       for (const auto& [axis, levels] : graded)
-        if (arm == arm_of({axis, 1}) && std::find(axes.begin(), axes.end(), axis) == axes.end()) axes.push_back(axis);
+        if (arm == arm_of({axis, 1}) && !contains(axes, axis)) axes.push_back(axis);
   return axes;
 }
 
@@ -62,8 +61,7 @@ ArmWeights weights_of(const Setting::Scenario& scenario, const std::string& axis
   const auto known = graded.find(axis);
   std::vector<int> levels;
   for (int level = 1; known != graded.end() && level <= known->second; ++level)
-    if (std::find(scenario.arms.begin(), scenario.arms.end(), arm_of({axis, level})) != scenario.arms.end())
-      levels.push_back(level);
+    if (contains(scenario.arms, arm_of({axis, level}))) levels.push_back(level);
   if (levels.empty()) return {};
   const std::vector<double> shares = report::trapezoids(levels);
   ArmWeights weights{{scenario.arms.front(), shares.front()}};

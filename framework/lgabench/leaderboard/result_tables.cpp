@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/leaderboard/areas.hpp>
 #include <lgabench/leaderboard/titles.hpp>
@@ -23,7 +22,7 @@ std::vector<std::string> arms_of(const Setting& setting) {
   std::vector<std::string> arms;
   for (const Setting::Scenario& scenario : setting.scenarios)
     for (const std::string& arm : scenario.arms)
-      if (std::find(arms.begin(), arms.end(), arm) == arms.end()) arms.push_back(arm);
+      if (!contains(arms, arm)) arms.push_back(arm);
   return arms;
 }
 
@@ -99,7 +98,7 @@ void add_results(report::Section& section, const NamedTable& table, const fs::pa
   }
   const std::vector<std::string> arms = arms_of(setting);
   auto [arm, n] = main_column(setting);
-  if (std::find(arms.begin(), arms.end(), arm) == arms.end())  // a preset of before the suite had it
+  if (!contains(arms, arm))  // a preset of before the suite had it
     arm = table.track.arms.empty() ? arms.back() : table.track.arms.front();
   add_captioned(section, along_demonstrations(table, arm));
   if (arms.size() > 1) add_captioned(section, by_arm(table, arms, n));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <variant>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/record/answer_source.hpp>
 
@@ -48,9 +49,8 @@ Tracks read_tracks(const fs::path& board) {
 void expect_arms(const fs::path& board, const Tracks& tracks, const Setting& setting) {
   const std::vector<std::string> arms = track_of(tracks, setting).arms;
   for (std::size_t i = 0; i < arms.size(); ++i)
-    if (std::none_of(setting.scenarios.begin(), setting.scenarios.end(), [&](const Setting::Scenario& scenario) {
-          return std::find(scenario.arms.begin(), scenario.arms.end(), arms[i]) != scenario.arms.end();
-        }))
+    if (std::none_of(setting.scenarios.begin(), setting.scenarios.end(),
+                     [&](const Setting::Scenario& scenario) { return contains(scenario.arms, arms[i]); }))
       throw InputError(fmt::format("{}: /abstraction/{}/{}: expected an arm that the preset has, got \"{}\"",
                                    (board / tracks_file).string(), setting.name(), i, arms[i]));
 }

@@ -8,16 +8,12 @@
 
 #include <lgabench/abstraction/disputed.hpp>
 #include <lgabench/abstraction/scenes.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/statistics/about_suite.hpp>
 #include <lgabench/statistics/statistics.hpp>
 
 namespace lgabench::leaderboard {
 namespace {
-
-template <class List, class Value>
-bool has(const List& list, const Value& value) {
-  return std::find(list.begin(), list.end(), value) != list.end();
-}
 
 // As it was played.
 std::optional<Installed> installed_as_played(const Setting& setting) {
@@ -33,7 +29,7 @@ std::optional<Installed> installed_as_played(const Setting& setting) {
 
 MainColumn main_column(const Setting& setting) {
   const report::AboutSuite about = report::about_suite(setting.suite);
-  const bool has_main = about.main_demonstrations && has(setting.demonstrations, *about.main_demonstrations);
+  const bool has_main = about.main_demonstrations && contains(setting.demonstrations, *about.main_demonstrations);
   return {about.main_arm, has_main ? *about.main_demonstrations : setting.demonstrations.back()};
 }
 
@@ -44,7 +40,7 @@ std::optional<Undisputed> undisputed_of(const Setting& setting) {
   const std::string& arm = all.main.arm;
   std::map<std::string, DisputedPairs> spaces;
   for (const Setting::Scenario& played : setting.scenarios) {
-    if (!has(played.arms, arm)) continue;
+    if (!contains(played.arms, arm)) continue;
     const Scenario scenario = suite_scenario(installed->suite, played.id, Truth::released, &installed->design);
     if (spaces.count(scenario.space.id) == 0) spaces.emplace(scenario.space.id, disputed_pairs(scenario.space));
     const DisputedPairs& pairs = spaces.at(scenario.space.id);

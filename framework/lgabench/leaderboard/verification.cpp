@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/statistics/statistics.hpp>
 
@@ -215,7 +216,7 @@ std::vector<std::string> claims(const Entry& entry) {
   for (const Json& line : entry.verifications) {
     const std::string what = entry.counts(line) ? "" : said(entry, line);
     std::string claim = fmt::format("claimed by {}: {}", line.at("by").get<std::string>(), what);
-    if (!what.empty() && std::find(all.begin(), all.end(), claim) == all.end()) all.push_back(std::move(claim));
+    if (!what.empty() && !contains(all, claim)) all.push_back(std::move(claim));
   }
   if (!entry.withdrawn.is_null() && !entry.is_withdrawn()) all.emplace_back("claimed: withdrawn");
   if (all.size() > most) {

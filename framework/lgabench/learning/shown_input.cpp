@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/learning/heat_map.hpp>
 
 namespace lgabench {
@@ -40,8 +41,7 @@ std::string note_of(Picture picture, PolicyKind policy, const std::vector<float>
 Shown shown_input(const PolicyInputs& offered, const PolicyInputs& inputs, PolicyKind policy, const Samples& read) {
   Shown shown;
   for (const Picture picture : offered.pictures)
-    if (std::find(inputs.pictures.begin(), inputs.pictures.end(), picture) == inputs.pictures.end())
-      shown.unread.push_back(name_of(picture, offered));
+    if (!contains(inputs.pictures, picture)) shown.unread.push_back(name_of(picture, offered));
   if (offered.text != Text::none)
     (inputs.text == Text::none ? shown.unread : shown.texts).emplace_back(name_of(offered.text));
   for (std::size_t i = 0; i < inputs.pictures.size(); ++i) {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
+#include <lgabench/core/contains.hpp>
 
 namespace lgabench::perturbations {
 
@@ -19,7 +19,7 @@ PerturbationAxis paraphrase() {
     std::vector<int> there;
     for (const ScenarioCommand& command : scenario.commands)
       if (command.wording > 0) there.push_back(command.wording);
-    return std::find(there.begin(), there.end(), level) != there.end()
+    return contains(there, level)
                ? ""
                : fmt::format("expected a command of {} with \"wording\": {}, got {}", scenario.id, level,
                              there.empty() ? "none with one" : fmt::format("{}", fmt::join(there, ", ")));

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cctype>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/suggest.hpp>
 #include <lgabench/plugin/loader.hpp>
 
@@ -15,10 +15,6 @@ const char* type_of(const Json& value) {
   if (value.is_boolean()) return "true or false";
   if (value.is_number_integer()) return "a whole number";
   return "a number";
-}
-
-bool contains(const Json& values, const Json& value) {
-  return std::find(values.begin(), values.end(), value) != values.end();
 }
 
 bool within(const Json& option, double value) {

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <map>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/perturbations.hpp>
@@ -111,7 +112,7 @@ std::string text(const char (&field)[Size], const char* name) {
 
 bool offers(const Json& option, const Json& value) {
   const Json values = option.is_object() ? option.value("values", Json()) : Json();
-  return values.is_array() && std::find(values.begin(), values.end(), value) != values.end();
+  return values.is_array() && contains(values, value);
 }
 
 // {"value": {"other option": [values of that one]}}: each is to be one that the option has.
@@ -156,8 +157,7 @@ DeclaredOptions read_options(const std::string& options_json) {
       reader.at("source").string();
       if (reader.has("values")) {
         const Json& values = reader.at("values").json();
-        if (!values.is_array() || std::find(values.begin(), values.end(), usual) == values.end())
-          reader.at("values").fail("a list that holds the default");
+        if (!values.is_array() || !contains(values, usual)) reader.at("values").fail("a list that holds the default");
       }
       if (reader.has("min") && (!usual.is_number() || usual.get<double>() < reader.at("min").number()))
         reader.at("min").fail("a number, not above a default that is one");
@@ -189,7 +189,7 @@ Json read_declared_axis(const PluginInfo& plugin, const std::string& declared) {
 
 void check_asks(const std::string& kind, const std::string& asks) {
   constexpr std::array<const char*, 6> known{"", "specify", "edit", "accept", "truth", "network"};
-  if (std::find(known.begin(), known.end(), asks) == known.end() || (kind != "method" && !asks.empty()))
+  if (!contains(known, asks) || (kind != "method" && !asks.empty()))
     throw PluginError(
         fmt::format("descriptor: asks \"{}\", expected \"specify\", \"edit\", \"accept\", \"truth\" or \"network\" of "
                     "a method, or \"\"",

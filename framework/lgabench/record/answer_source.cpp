@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/core/contains.hpp>
 
 namespace lgabench {
 namespace {
@@ -58,7 +57,7 @@ std::string answers_complaint(const std::string& word, bool with_none) {
   const std::vector<std::string> words = answer_words(with_none);
   const AnswerSource source = read_answer_source(word);
   if (std::holds_alternative<CassetteAnswers>(source) || std::holds_alternative<FileAnswers>(source) ||
-      std::find(words.begin(), words.end(), word) != words.end())
+      contains(words, word))
     return "";
   return fmt::format("expected {}, cassette:FILE or FILE.json, got {}", fmt::join(words, ", "), word);
 }

@@ -1,11 +1,11 @@
 // What a click on a number shows: kept short, as a large run has hundreds of thousands of episodes.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/shown.hpp>
 #include <lgabench/record/outcome.hpp>
@@ -20,7 +20,7 @@ namespace {
 Json places_of(const std::string& id, const Action& action) {
   static const std::vector<std::string> installed = environment_ids();
   Json all = Json::array();
-  if (std::find(installed.begin(), installed.end(), id) == installed.end()) return all;
+  if (!contains(installed, id)) return all;
   const EnvironmentType& environment = find_environment(id);
   const ActionSpace& space = environment.action_space();
   if (action.size() != space.size()) return all;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/report/perturbation_parts.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/statistics/pairs.hpp>
@@ -21,7 +22,7 @@ bool moves(const Curve& curve) {
 std::vector<std::string> distinct(const std::vector<const Curve*>& curves, std::string Curve::*member) {
   std::vector<std::string> all;
   for (const Curve* curve : curves)
-    if (std::find(all.begin(), all.end(), curve->*member) == all.end()) all.push_back(curve->*member);
+    if (!contains(all, curve->*member)) all.push_back(curve->*member);
   return all;
 }
 

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <vector>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/selection.hpp>
@@ -35,7 +36,7 @@ Json what_is_kept(const CellResult& cell, const Json& selection) {
 
 // Whether the list lacked the scene's picture of that name, which it then has; not of "".
 bool is_new_in(std::vector<std::string>& names, const std::string& scene, const std::string& name) {
-  if (name.empty() || std::find(names.begin(), names.end(), scene + name) != names.end()) return false;
+  if (name.empty() || contains(names, scene + name)) return false;
   names.push_back(scene + name);
   return true;
 }

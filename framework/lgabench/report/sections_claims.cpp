@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/document/document.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/statistics/pairs.hpp>
@@ -96,7 +97,7 @@ Grid by_scenario(const MethodStyles& styles, const AboutSuite& about, const std:
   std::vector<std::string> scenarios;
   for (const Placed& of : all)
     for (const auto& item : of.difference.by_scenario)
-      if (std::find(scenarios.begin(), scenarios.end(), item.first) == scenarios.end()) scenarios.push_back(item.first);
+      if (!contains(scenarios, item.first)) scenarios.push_back(item.first);
   Grid grid;
   grid.name = "claims_scenarios";
   grid.caption = "The differences by scenario";

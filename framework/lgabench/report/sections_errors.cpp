@@ -5,6 +5,7 @@
 #include <set>
 #include <tuple>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environment.hpp>
 #include <lgabench/document/document.hpp>
 #include <lgabench/report/sections.hpp>
@@ -56,7 +57,7 @@ Grid grid_of(const Material& material, const AboutSuite& about, const Table& tab
   std::vector<SelectionErrors> columns;
   for (const Row& row : table.rows)
     if (row.arm == arm && row.demonstrations == n && row.is_mean() && !row.errors.none() &&
-        std::find(columns.begin(), columns.end(), row.errors) == columns.end())
+        !contains(columns, row.errors))
       columns.push_back(row.errors);
   if (columns.empty()) return grid;
   std::sort(columns.begin(), columns.end(), in_columns);

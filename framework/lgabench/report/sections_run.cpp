@@ -1,8 +1,7 @@
 // What was run, how long it took, what failed, and what it was built of.
 #include <fmt/format.h>
 
-#include <algorithm>
-
+#include <lgabench/core/contains.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/statistics/tables.hpp>
@@ -55,7 +54,7 @@ Section what_was_run(const Material& material) {
   for (const CellResult& cell : run.cells)
     for (const CommandResult& command : cell.commands) {
       const std::string words = command_text(command.utterance, command.seen, tell), row = cell.scenario + '\n' + words;
-      if (std::find(known_rows.begin(), known_rows.end(), row) != known_rows.end()) continue;
+      if (contains(known_rows, row)) continue;
       known_rows.push_back(row);
       grid.rows.push_back({{}, {cell.scenario, words}});
     }

@@ -7,6 +7,8 @@
 
 #include <lgabench/report/sections.hpp>
 
+#include <lgabench/core/contains.hpp>
+
 namespace lgabench::report {
 namespace {
 
@@ -103,8 +105,7 @@ Section learning_curves(const Material& material) {
         continue;
       cells.push_back(&cell);
       for (const auto& item : cell.training) names.insert(item.first);
-      if (std::find(scenarios.begin(), scenarios.end(), cell.scenario) == scenarios.end())
-        scenarios.push_back(cell.scenario);
+      if (!contains(scenarios, cell.scenario)) scenarios.push_back(cell.scenario);
     }
     Charts large, small;
     for (const std::string& name : names) {

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/seeing/features.hpp>
 
@@ -28,10 +29,8 @@ const std::string& most_voted(const Forest& forest, const std::vector<float>& ro
 
 std::vector<bool> known(const Forest& forest, const std::vector<std::string>& names, const char* what) {
   std::vector<bool> all;
-  for (const std::string& name : forest.classes())
-    all.push_back(std::find(names.begin(), names.end(), name) != names.end());
-  if (std::find(all.begin(), all.end(), true) == all.end())
-    throw InputError(fmt::format("reader: it learned no {} of this feature space", what));
+  for (const std::string& name : forest.classes()) all.push_back(contains(names, name));
+  if (!contains(all, true)) throw InputError(fmt::format("reader: it learned no {} of this feature space", what));
   return all;
 }
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/parallel.hpp>
 #include <lgabench/statistics/about_suite.hpp>
 #include <lgabench/statistics/claims_field.hpp>
@@ -81,9 +82,7 @@ void judge_equivalence(ClaimedDifference& d, double margin) {
 std::string reasons(const std::vector<ClaimedDifference>& differences, Test test) {
   std::vector<std::string> all;
   for (const ClaimedDifference& d : differences)
-    if (const std::string& reason = (d.*test).reason;
-        !reason.empty() && std::find(all.begin(), all.end(), reason) == all.end())
-      all.push_back(reason);
+    if (const std::string& reason = (d.*test).reason; !reason.empty() && !contains(all, reason)) all.push_back(reason);
   return all.empty() ? "no method's cell has been played" : fmt::format("{}", fmt::join(all, "; "));
 }
 
@@ -265,7 +264,7 @@ Field only(const Field& field, const std::vector<std::string>& scenarios) {
   if (scenarios.empty()) return field;
   Field some;
   for (const CellResult* cell : field.cells())
-    if (std::find(scenarios.begin(), scenarios.end(), cell->scenario) != scenarios.end()) some.add(*cell);
+    if (contains(scenarios, cell->scenario)) some.add(*cell);
   some.layout = field.layout, some.engine = field.engine;
   return some;
 }
@@ -278,7 +277,7 @@ Claim measured_claim(const SuiteClaim& own, const Field& all) {
   const std::vector<int> every(field.demonstrations.begin(), field.demonstrations.end());
   for (const std::string& arm : own.arms.empty() ? field.arms : own.arms)
     for (const int n : own.demonstrations.empty() ? every : own.demonstrations) {
-      if (std::find(field.arms.begin(), field.arms.end(), arm) == field.arms.end()) {
+      if (!contains(field.arms, arm)) {
         ClaimedDifference missing;
         missing.above = own.above, missing.below = own.below, missing.arm = arm, missing.demonstrations = n;
         missing.these.reason = missing.alike.reason = "no arm " + arm;

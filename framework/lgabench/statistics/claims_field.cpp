@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/statistics/pairs.hpp>
 
@@ -88,7 +89,7 @@ void Field::add(const CellResult& cell) {
   if (cell.is_reference()) return;
   if (cell.rehearsal) rehearsal = true;
   for (const std::string& arm : cell.arms_in_means())
-    if (std::find(arms.begin(), arms.end(), arm) == arms.end()) arms.push_back(arm);
+    if (!contains(arms, arm)) arms.push_back(arm);
   demonstrations.insert(cell.demonstrations);
   rows[cell.method][cell.demonstrations][{cell.scenario, cell.training_seed}][cell.participant] = &cell;
 }
@@ -119,7 +120,7 @@ std::string find_row(const Field& field, const ClaimedMethod& method) {
 
 bool has_arm(const CellResult& cell, const std::string& arm) {
   const std::vector<std::string> arms = cell.arms_in_means();
-  return std::find(arms.begin(), arms.end(), arm) != arms.end();
+  return contains(arms, arm);
 }
 
 ClaimedDifference measured(const Field& field, const std::string& claim, const ClaimedMethod& above,

@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/statistics/names.hpp>
 
 namespace lgabench::report {
@@ -69,7 +70,7 @@ std::vector<EngineAgreement> engine_agreement(const RunResults& run) {
   std::map<std::string, std::vector<std::string>> engines;  // of each layout, in their order
   for (const CellResult& cell : run.cells) {
     std::vector<std::string>& of = engines[cell.layout];
-    if (std::find(of.begin(), of.end(), cell.engine) == of.end()) of.push_back(cell.engine);
+    if (!contains(of, cell.engine)) of.push_back(cell.engine);
   }
   std::vector<EngineAgreement> all;
   for (const auto& [layout, names] : engines)

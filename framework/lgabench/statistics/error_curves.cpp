@@ -7,6 +7,7 @@
 #include <map>
 #include <tuple>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/parallel.hpp>
 #include <lgabench/statistics/pairs.hpp>
@@ -37,8 +38,7 @@ std::map<Policy, Levels> policies_of(const ErrorCurve& curve, const RunResults& 
     if (cell.is_reference() || other_kind || cell.method != curve.method + errors.suffix() ||
         std::tie(cell.layout, cell.engine, cell.demonstrations) !=
             std::tie(curve.layout, curve.engine, curve.demonstrations) ||
-        std::find(cell.arms.begin(), cell.arms.end(), curve.arm) == cell.arms.end() ||
-        cell.ambiguous.count(curve.arm) != 0)
+        !contains(cell.arms, curve.arm) || cell.ambiguous.count(curve.arm) != 0)
       continue;
     all[{cell.scenario, cell.training_seed, cell.participant}][errors.missing + errors.added] = &cell;
   }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <tuple>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/parallel.hpp>
 #include <lgabench/core/perturbations.hpp>
@@ -33,7 +34,7 @@ std::optional<PerturbationAxis> axis_of(const RunResults& run, const std::string
 
 bool has_curve(const Row& row) {
   return row.is_mean() && row.perturbation && row.success && row.shift &&
-         (!row.is_reference() || std::find(bound_rows.begin(), bound_rows.end(), row.method) != bound_rows.end());
+         (!row.is_reference() || contains(bound_rows, row.method));
 }
 
 bool is_cell_of(const CellResult& cell, const PerturbationCurve& curve) {

@@ -11,6 +11,7 @@
 #include <set>
 #include <tuple>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/parallel.hpp>
@@ -34,12 +35,12 @@ void read_episodes(const fs::path& file, CellResult& cell) {
     const JsonReader reader(json, fmt::format("{}: line {}", file.string(), ++line));
     Episode e = read_episode(reader);
     e.arm = one_line(e.arm);
-    if (std::find(cell.arms.begin(), cell.arms.end(), e.arm) == cell.arms.end())
+    if (!contains(cell.arms, e.arm))
       reader.at("arm").fail(fmt::format("an arm of the scenario ({})", fmt::join(cell.arms, ", ")));
     reader.at("command").integer(0, static_cast<long long>(cell.commands.size()) - 1);
     if (e.told) reader.at("told").integer(0, static_cast<long long>(cell.commands.size()) - 1);
     reader.at("index").integer(0, cell.episodes_per_arm - 1);
-    if (!e.success() && std::find(words.begin(), words.end(), e.failure) == words.end())
+    if (!e.success() && !contains(words, e.failure))
       reader.at("failure").fail(fmt::format("none, {}", fmt::join(words, ", ")));
     if (!e.attribution.empty() && cell.is_reference()) reader.at("attribution").fail("null for a reference row");
     if (!played[e.arm].emplace(e.index, e).second)

@@ -7,6 +7,7 @@
 #include <set>
 #include <tuple>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/parallel.hpp>
 #include <lgabench/statistics/bootstrap.hpp>
 #include <lgabench/statistics/names.hpp>
@@ -309,7 +310,7 @@ Table make_table(const Cells& cells) {
     for (const std::string& scenario : scenarios)
       for (const auto& [place, seeds] : grouped[scenario]) {
         const std::vector<std::string>& played = seeds.front()->arms;
-        if (std::find(played.begin(), played.end(), arm) != played.end()) groups.emplace_back(&place, &seeds);
+        if (contains(played, arm)) groups.emplace_back(&place, &seeds);
       }
     std::vector<Draft> drafts(groups.size());
     in_parallel(groups.size(),

@@ -6,13 +6,15 @@
 
 #include <lgabench/statistics/summary.hpp>
 
+#include <lgabench/core/contains.hpp>
+
 namespace lgabench::report {
 
 void append_unique(std::vector<std::string>& all, const std::string& one) {
-  if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
+  if (!contains(all, one)) all.push_back(one);
 }
 
-bool Row::marked(const std::string& mark) const { return std::find(marks.begin(), marks.end(), mark) != marks.end(); }
+bool Row::marked(const std::string& mark) const { return contains(marks, mark); }
 
 std::string Row::without_errors() const { return method.substr(0, method.size() - errors.suffix().size()); }
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/statistics/names.hpp>
@@ -72,8 +73,8 @@ std::optional<Column> main_column(const Table& table, const AboutSuite& about) {
   Column column{"", table.arms.back(), all.back()};
   for (const std::string& arm : table.arms)
     if (table.arm_head(arm) == table.arm_title(arm)) column.arm = arm;
-  if (std::find(table.arms.begin(), table.arms.end(), about.main_arm) != table.arms.end()) column.arm = about.main_arm;
-  if (about.main_demonstrations && std::find(all.begin(), all.end(), *about.main_demonstrations) != all.end())
+  if (contains(table.arms, about.main_arm)) column.arm = about.main_arm;
+  if (about.main_demonstrations && contains(all, *about.main_demonstrations))
     column.demonstrations = *about.main_demonstrations;
   return column;
 }

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include <lgabench/abstraction/disputed.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/statistics/statistics.hpp>
@@ -40,7 +41,7 @@ Json item_of(const std::string& command, const std::vector<FeatureSet>& rows, co
   Json pairs = Json::array();
   const auto ask = [&pairs](const AskedPair& pair, Json more = Json::object()) {
     more.update({{"object_type", pair.object_type}, {"texture", pair.texture}});
-    if (std::find(pairs.begin(), pairs.end(), more) == pairs.end()) pairs.push_back(std::move(more));  // rows overlap
+    if (!contains(pairs, more)) pairs.push_back(std::move(more));  // rows overlap
   };
   for (const FeatureSet& row : rows) {
     const std::vector<AskedPair> all = shuffled(row, random);
@@ -73,7 +74,7 @@ Json disputed_items(std::uint64_t seed) {
       const auto found =
           std::find_if(scenarios.begin(), scenarios.end(), [&, id = space, words = command](const Scenario& one) {
             const std::vector<std::string> all = one.utterances();
-            return one.space.id == id && std::find(all.begin(), all.end(), words) != all.end();
+            return one.space.id == id && contains(all, words);
           });
       if (found == scenarios.end())
         throw InputError(fmt::format("disputed/{}.json: no scenario has the command \"{}\"", space, command));

@@ -6,6 +6,7 @@
 
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/abstraction/select_features.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/scenario.hpp>
@@ -39,7 +40,7 @@ Item item_of_pairs(const JsonReader& reader) {
   if (!item.truth) reader.at("asked_as").fail("a command of " + item.scenario);
   item.command.utterance = item.asked_as;
   const auto known = [](const JsonReader& name, const std::vector<std::string>& names) {
-    if (std::find(names.begin(), names.end(), name.string()) == names.end()) name.fail("a word of the space");
+    if (!contains(names, name.string())) name.fail("a word of the space");
     return name.string();
   };
   for (const JsonReader& pair : reader.at("pairs").elements()) {
@@ -104,7 +105,7 @@ void expect_distinct(const Protocol& protocol, const JsonReader& reader) {
   const auto add = [&](const std::vector<Item>& some) {
     for (const Item& item : some) {
       const std::string& one = item.pairs.empty() ? item.scenario : item.asked_as;
-      if (std::find(seen.begin(), seen.end(), one) != seen.end())
+      if (contains(seen, one))
         reader.fail(fmt::format("each scenario once in sets and spares; {} is there twice", one));
       seen.push_back(one);
     }

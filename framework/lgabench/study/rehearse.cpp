@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/study/session.hpp>
 #include <lgabench/study/withdrawal.hpp>
@@ -77,7 +78,7 @@ class Person {
     constexpr double missed = .03, added = .01;
     Json words = Json::array();
     for (const Json& word : known) {
-      const bool is_right = std::find(right.begin(), right.end(), word.get<std::string>()) != right.end();
+      const bool is_right = contains(right, word.get<std::string>());
       if (is_right ? random_.uniform() > missed : random_.uniform() < added) words.push_back(word);
     }
     if (words.empty()) words.push_back(right.empty() ? known.front() : Json(right.front()));
@@ -157,8 +158,7 @@ class Person {
     for (const bool on : {true, false}) {
       Json values = Json::array();
       for (const Json& value : on ? after : before)
-        if (const Json& others = on ? before : after; std::find(others.begin(), others.end(), value) == others.end())
-          values.push_back(value);
+        if (const Json& others = on ? before : after; !contains(others, value)) values.push_back(value);
       if (!values.empty()) say("edit", {{"role", role}, {"feature", feature}, {"values", values}, {"on", on}});
     }
   }

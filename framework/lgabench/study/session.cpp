@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/study/withdrawal.hpp>
 
@@ -166,8 +167,7 @@ void Session::check(const JsonReader& event, std::int64_t now_ms) const {
     if (event.at("answers").elements().size() != now().item->pairs.size())
       event.at("answers").fail("one for each pair");
     for (const JsonReader& one : event.at("answers").elements())
-      if (std::find(pair_answers.begin(), pair_answers.end(), one.string()) == pair_answers.end())
-        one.fail("yes, no or can't tell");
+      if (!contains(pair_answers, one.string())) one.fail("yes, no or can't tell");
     return;
   }
   if (kind != "questionnaire") event.at("kind").fail("a kind of event");
@@ -188,7 +188,7 @@ void Session::check_edit(const JsonReader& event) const {
   if (feature != "object_types" && feature != "textures") event.at("feature").fail("object_types or textures");
   const auto& known = feature == "textures" ? item.space.textures : item.space.object_types;
   for (const std::string& value : event.at("values").strings())
-    if (std::find(known.begin(), known.end(), value) == known.end()) event.at("values").fail("words of the space");
+    if (!contains(known, value)) event.at("values").fail("words of the space");
   event.at("on").boolean();
 }
 
