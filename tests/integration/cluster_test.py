@@ -72,7 +72,7 @@ class Elements(Case):
         self.assertEqual((said["array"], said["absent"]), ("1-2", "2"))
 
     def test_status_counts_a_cell_once(self):
-        """One that is being computed is not missing."""
+        """One that is being computed is not missing, nor is a part that is running to be run again."""
         self.call("run", *RUN, "--shard", "1/2", "--out", "part")
         cells = sorted((self.dir / "part/cells").iterdir())
         for cell in cells[:3]:
@@ -81,7 +81,8 @@ class Elements(Case):
         directory = os.open(self.dir / "part", os.O_RDONLY)
         self.addCleanup(os.close, directory)
         fcntl.flock(directory, fcntl.LOCK_EX)
-        self.assertRegex(self.call("status", "part", expect=3).stdout, r" 1/2 +14 +11 +1 +0 +2  part \(running\)")
+        self.assertRegex(self.call("status", "part", expect=3).stdout,
+                         r" 1/2 +14 +11 +1 +0 +2  part \(running\)\nnot begun: 2\nto finish: --array=2\n$")
 
     def test_status_of_two_parts_in_one_directory_is_the_whole_runs(self):
         for shard in ("1/2", "2/2", "1/2"):

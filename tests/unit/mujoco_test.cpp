@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <common/objects.hpp>
 #include <lgabench/core/error.hpp>
 
@@ -32,6 +34,17 @@ TEST(MujocoWorld, AFaultInsideIsAnErrorNotTheEndOfTheProcess) {
   world.reset({{0, {{.5, 0, 0}, {}}}});
   EXPECT_THROW(mju_error("a fault inside"), EngineError);
   EXPECT_NO_THROW(world.step());
+}
+
+TEST(MujocoWorld, ARayBesideATiltedBodyPassesBy) {
+  const common::ObjectModel& block = common::object_model("block");
+  MujocoWorld world;
+  world.load({block.body}, 1);
+  world.reset({{0, {{.5, 0, .1}, {std::sin(pi / 8), 0, 0, std::cos(pi / 8)}}}});  // by 45 degrees about x
+  const double edge_m = block.size_m.y / 2 * std::cos(pi / 4);                    // its lower one, the farthest in y
+  double height = 0;
+  EXPECT_EQ(world.cast_down({.5, edge_m - .001}, height), 0);
+  EXPECT_EQ(world.cast_down({.5, edge_m + .001}, height), no_body);
 }
 
 }  // namespace
