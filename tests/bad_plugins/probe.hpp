@@ -166,6 +166,13 @@ long thread_attributes(const std::string&) {
   return number;
 }
 
+// -1 may be the niceness itself.
+bool niceness_is_told(pid_t process) {
+  errno = 0;
+  ::getpriority(PRIO_PROCESS, static_cast<id_t>(process));
+  return errno == 0;
+}
+
 // Each of what is asked of others below.
 long asks_of_itself(const std::string&) {
   cpu_set_t all;
@@ -177,7 +184,7 @@ long asks_of_itself(const std::string&) {
         ::sched_getparam(itself, &schedule) != 0 || ::sched_getscheduler(itself) < 0 ||
         ::syscall(SYS_sched_getattr, itself, attributes, sizeof attributes, 0) != 0 ||
         ::sched_rr_get_interval(itself, &time) != 0 || ::syscall(SYS_ioprio_get, 1, itself) < 0 ||
-        ::getpriority(PRIO_PROCESS, static_cast<id_t>(itself)) != 0)
+        !niceness_is_told(itself))
       return -1;
   clockid_t of_this_thread = 0;
   if (::pthread_getcpuclockid(::pthread_self(), &of_this_thread) != 0) return errno = EINVAL, -1;

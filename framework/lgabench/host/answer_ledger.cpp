@@ -157,15 +157,16 @@ Json AnswerLedger::ask_person(const JsonReader& reader) {
     return {{"type", "accepts"}, {"accepts", services_.human.accepts(command, type, texture)}};
   }
   if (how == "scene" || how == "takes" || how == "which") {
+    const bool takes = how == "takes";  // a lambda of C++17 captures no structured binding
     const auto [scene, instance] = protocol::read_or_malformed([&] {
       constexpr long long most = 1 << 20;
       return std::pair(static_cast<int>(reader.at("scene").integer(-most, most)),
-                       how == "takes" ? static_cast<std::uint8_t>(reader.at("instance").integer(0, 255)) : 0);
+                       takes ? static_cast<std::uint8_t>(reader.at("instance").integer(0, 255)) : 0);
     });
     if (how == "scene")
       return {{"type", "scene"}, {"objects", protocol::to_json(services_.human.scene(command, scene))}};
-    accepts_ += how == "takes" ? 1 : price_of_which;
-    if (how == "takes")
+    accepts_ += takes ? 1 : price_of_which;
+    if (takes)
       return {{"type", "takes"}, {"takes", services_.human.takes(command, scene, static_cast<std::uint8_t>(instance))}};
     const std::optional<std::uint8_t> one = services_.human.which(command, scene);
     return {{"type", "which"}, {"instance", one ? Json(*one) : Json()}};

@@ -317,9 +317,9 @@ std::string what_was_played(const Setting& setting) {
   const auto presets = report::about_suite(setting.suite).presets;
   const auto own = presets.find(setting.preset);
   return fmt::format(
-      "{}{} scenarios, {} demonstrations, {} training seeds, {} test scenes of each arm and {}; scene seed {}.",
+      "{}{} scenarios, {} demonstrations, {} training seed{}, {} test scenes of each arm and {}; scene seed {}.",
       own == presets.end() ? "" : own->second + " ", setting.scenarios.size(), fmt::join(setting.demonstrations, ", "),
-      setting.seeds.size(), setting.episodes,
+      setting.seeds.size(), setting.seeds.size() == 1 ? "" : "s", setting.episodes,
       setting.test_scenes == TestScenes::per_seed ? "training seed" : "scenario", setting.scene_seed);
 }
 
