@@ -119,6 +119,13 @@ class Release(unittest.TestCase):
         section = re.search(rf"^## {re.escape(self.version)} .*?$(.*?)^## ", (SOURCE / "CHANGELOG.md").read_text(), re.M | re.S)[1]
         self.assertEqual(done.stdout.strip(), section.strip())
 
+    def test_a_release_installs_what_packing_asks_for(self):
+        asked = re.findall(r'tool\("([\w-]+)"\)', (SOURCE / "cmake/bundle.py").read_text())
+        [installs] = re.findall(r"^cmake/setup.*$", (SOURCE / ".ci/release").read_text(), re.M)
+        self.assertTrue(asked)
+        for name in asked:
+            self.assertIn(name, installs.split())
+
     @unittest.skipIf("-" in version, "a version under development has no section yet")
     def test_a_directory_with_something_in_it_is_refused(self):
         with tempfile.TemporaryDirectory() as directory:
