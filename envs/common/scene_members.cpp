@@ -13,10 +13,9 @@ std::vector<std::string> read_missing(const JsonReader& list, const std::vector<
   std::vector<std::string> names = list.strings();
   if (names.empty()) list.fail("at least one name");
   for (const JsonReader& name : list.elements()) {
-    const auto has = [&name](const std::vector<std::string>& all) { return lgabench::contains(all, name.string()); };
-    if (!has(space)) name.fail("a name of the feature space");
+    if (!lgabench::contains(space, name.string())) name.fail("a name of the feature space");
     for (const ScenarioCommand& command : scenario.commands)
-      if (has(command.truth.target.product().*meant))
+      if (lgabench::contains(command.truth.target.product().*meant, name.string()))
         name.fail(fmt::format("a name outside of what \"{}\" means", command.utterance));
   }
   return names;

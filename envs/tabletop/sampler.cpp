@@ -45,18 +45,17 @@ bool is_letter(const std::string& type) { return type.rfind("letter ", 0) == 0; 
 std::vector<std::pair<std::size_t, std::size_t>> outside(const FeatureSpace& space,
                                                          const std::vector<const FeatureSet*>& sets,
                                                          const std::vector<bool>& type_allowed) {
-  const auto has = [](const std::vector<std::string>& names, const std::string& name) { return contains(names, name); };
   std::vector<std::vector<bool>> in_textures;  // of each set
   for (const FeatureSet* set : sets) {
     in_textures.emplace_back();
-    for (const std::string& texture : space.textures) in_textures.back().push_back(has(set->textures, texture));
+    for (const std::string& texture : space.textures) in_textures.back().push_back(contains(set->textures, texture));
   }
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t type = 0; type < space.object_types.size(); ++type) {
     if (!type_allowed[type]) continue;
     std::vector<bool> taken(space.textures.size());
     for (std::size_t s = 0; s < sets.size(); ++s)
-      if (has(sets[s]->object_types, space.object_types[type]))
+      if (contains(sets[s]->object_types, space.object_types[type]))
         for (std::size_t t = 0; t < taken.size(); ++t) taken[t] = taken[t] || in_textures[s][t];
     for (std::size_t t = 0; t < taken.size(); ++t)
       if (!taken[t]) pairs.emplace_back(type, t);

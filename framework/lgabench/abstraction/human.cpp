@@ -124,7 +124,7 @@ bool AskedInScenes::takes(const Command& command, int number, std::uint8_t insta
   spend(command, 1);
   const std::vector<std::uint8_t> taken = grounded(truth_of(command).target, visible);
   RandomStream stream(fmt::format("person/takes/{}/{}/{}", command.utterance, number, instance));
-  return (contains(taken, instance)) != (stream.uniform() < errs_);
+  return contains(taken, instance) != (stream.uniform() < errs_);
 }
 
 std::optional<std::uint8_t> AskedInScenes::which(const Command& command, int number) {

@@ -153,8 +153,6 @@ Json to_json(const PerturbationAxis& axis) {
   return json;
 }
 
-bool known(const std::vector<std::string>& ids, const std::string& id) { return contains(ids, id); }
-
 void info(const std::string& name, bool json, const std::vector<fs::path>& directories, const std::string& python) {
   const Catalogue catalogue = plugins_at(directories, python);
   Json found = Json::array();  // an environment and a suite may have one name
@@ -168,7 +166,7 @@ void info(const std::string& name, bool json, const std::vector<fs::path>& direc
       if (!json) print_own(axis);
       found.push_back(to_json(axis));
     }
-  if (known(scenario_ids(), name)) {
+  if (contains(scenario_ids(), name)) {
     const Scenario scenario = load_scenario(name);
     if (!json) print(scenario);
     found.push_back(scenario.json);
@@ -179,7 +177,7 @@ void info(const std::string& name, bool json, const std::vector<fs::path>& direc
     if (!json) print(suite);
     found.push_back(to_json(suite));
   }
-  if (known(environment_ids(), name)) {
+  if (contains(environment_ids(), name)) {
     const EnvironmentType& environment = find_environment(name);
     if (!json) print(environment);
     found.push_back(to_json(environment));

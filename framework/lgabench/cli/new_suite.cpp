@@ -54,7 +54,7 @@ bool has_answers(const std::vector<std::string>& scenarios) {
 std::string layout_of(const std::vector<Scenario>& scenarios) {
   const std::vector<std::string> common = common_layouts(scenarios);
   if (common.empty()) throw InputError("--scenarios: expected scenarios that have a layout in common");
-  return !contains(common, "continuous") ? common.front() : "continuous";
+  return contains(common, "continuous") ? "continuous" : common.front();
 }
 
 Json suite_json(const NewSuiteArguments& a, const std::vector<Scenario>& scenarios, bool answered) {

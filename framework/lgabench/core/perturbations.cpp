@@ -60,8 +60,7 @@ std::vector<EpisodePart> perceived_parts(const JsonReader& list) {
 }  // namespace
 
 bool PerturbationAxis::touches(EpisodePart part) const {
-  const auto has = [](const std::vector<EpisodePart>& some, EpisodePart one) { return contains(some, one); };
-  if (part != EpisodePart::input) return has(changes, part) || has(may_change, part);
+  if (part != EpisodePart::input) return contains(changes, part) || contains(may_change, part);
   for (const EpisodePart of_input :
        {EpisodePart::rgb, EpisodePart::ids, EpisodePart::instances, EpisodePart::words, EpisodePart::selection})
     if (touches(of_input)) return true;

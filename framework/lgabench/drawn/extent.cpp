@@ -9,8 +9,7 @@ namespace lgabench::drawn {
 namespace {
 
 Holds held(const std::string& name, const std::vector<std::string>& yes, const std::vector<std::string>& undecided) {
-  const auto in = [&name](const std::vector<std::string>& names) { return contains(names, name); };
-  return in(yes) ? Holds::yes : in(undecided) ? Holds::undecided : Holds::no;
+  return contains(yes, name) ? Holds::yes : contains(undecided, name) ? Holds::undecided : Holds::no;
 }
 
 }  // namespace

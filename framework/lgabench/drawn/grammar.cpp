@@ -89,16 +89,15 @@ struct Grammar {
 // The order's names that things may have which are meant; nothing where these have others, or all the same.
 std::optional<std::vector<std::string>> order_within(const std::vector<std::string>& order,
                                                      const std::vector<FeatureSet>& sets, const FeatureSpace& space) {
-  const auto in = [](const std::vector<std::string>& names, const std::string& name) { return contains(names, name); };
   const bool textures =
-      std::all_of(order.begin(), order.end(), [&](const auto& name) { return in(space.textures, name); });
+      std::all_of(order.begin(), order.end(), [&](const auto& name) { return contains(space.textures, name); });
   std::vector<std::string> within;
   for (const FeatureSet& set : sets)
     for (const std::string& name : textures ? set.textures : set.object_types)
-      if (!in(order, name)) return {};
+      if (!contains(order, name)) return {};
   for (const std::string& name : order)
     if (std::any_of(sets.begin(), sets.end(),
-                    [&](const FeatureSet& set) { return in(textures ? set.textures : set.object_types, name); }))
+                    [&](const FeatureSet& set) { return contains(textures ? set.textures : set.object_types, name); }))
       within.push_back(name);
   if (within.size() < 2) return {};
   return within;

@@ -9,13 +9,11 @@
 namespace lgabench::drawn {
 namespace {
 
-bool is_in(const std::vector<std::size_t>& all, std::size_t one) { return contains(all, one); }
-
 // Of each answer, how likely the rule makes it: no and yes; or each thing, then none.
 std::vector<double> answers(const PersonRule& rule, const Standing& scene, const std::optional<std::size_t>& one,
                             double errs) {
   const std::vector<std::size_t> taken = taken_by(rule, scene.things, scene.goal);
-  if (one) return is_in(taken, *one) ? std::vector<double>{errs, 1 - errs} : std::vector<double>{1 - errs, errs};
+  if (one) return contains(taken, *one) ? std::vector<double>{errs, 1 - errs} : std::vector<double>{1 - errs, errs};
   const std::size_t count = scene.things.size() + 1;
   std::vector<double> all(count, 0);
   const double right = taken.empty() ? 1 : 1 / static_cast<double>(taken.size());
@@ -53,7 +51,7 @@ void Belief::took(const Standing& scene, std::size_t one) {
   std::vector<double> likelihoods;
   for (const PersonRule& rule : rules_) {
     const std::vector<std::size_t> taken = taken_by(rule, scene.things, scene.goal);
-    likelihoods.push_back(is_in(taken, one) ? 1 / static_cast<double>(taken.size()) : 0);
+    likelihoods.push_back(contains(taken, one) ? 1 / static_cast<double>(taken.size()) : 0);
   }
   weigh(likelihoods);
 }

@@ -26,11 +26,6 @@ bool ends_with(const std::string& text, const std::string& end) {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-template <class Part>
-bool is_any_of(const std::vector<Part>& parts, const Part& one) {
-  return contains(parts, one);
-}
-
 bool belongs(const PersonRule& rule, const Thing& one) { return rule.types[one.type] && rule.textures[one.texture]; }
 
 bool by_column(Place place) { return place == Place::leftmost || place == Place::rightmost; }
@@ -115,9 +110,9 @@ const PersonGrammar::Hint* hint_in(const PersonGrammar& grammar, const std::stri
 }
 
 bool leaves(const PersonGrammar::Hint& hint, const PersonRule& rule) {
-  return (hint.types.empty() || is_any_of(hint.types, rule.types)) &&
-         (hint.textures.empty() || is_any_of(hint.textures, rule.textures)) &&
-         (hint.places.empty() || (rule.place && is_any_of(hint.places, *rule.place)));
+  return (hint.types.empty() || contains(hint.types, rule.types)) &&
+         (hint.textures.empty() || contains(hint.textures, rule.textures)) &&
+         (hint.places.empty() || (rule.place && contains(hint.places, *rule.place)));
 }
 
 std::vector<PersonRule> left_by(const PersonGrammar::Hint& hint, std::vector<PersonRule> rules) {
@@ -274,7 +269,7 @@ std::vector<Person> draw_persons(const PersonGrammar& grammar, std::uint64_t see
           std::numeric_limits<int>::max());
       person.rule = scene->rules.front();
       for (const PersonGrammar::Hint& hint : grammar.hints)
-        if (is_any_of(hint.words, grammar.words[w].a) && leaves(hint, person.rule)) says.push_back(hint.says);
+        if (contains(hint.words, grammar.words[w].a) && leaves(hint, person.rule)) says.push_back(hint.says);
     } while (hinted && says.empty());
     if (hinted) person.utterance += " " + says[random.below(static_cast<std::uint32_t>(says.size()))];
     persons.push_back(std::move(person));
