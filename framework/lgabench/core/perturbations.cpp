@@ -112,7 +112,7 @@ PerturbationAxis read_axis(const std::string& id, const JsonReader& reader) {
   if (reader.has("named")) axis.named = reader.at("named").boolean();
   axis.of_plugin = true;
   if (reader.has("version")) axis.version = reader.at("version").string();
-  axis.perceive = [id](Observation, const Scenario&, int, RandomStream) -> Observation {
+  axis.perceive = [id](const Observation&, const Scenario&, int, const RandomStream&) -> Observation {
     throw InputError(fmt::format("perturbation {}: a plugin's, whose process only cells of a run have", id));
   };
   return axis;
@@ -189,10 +189,12 @@ int more_bodies(const Scenario& scenario) {
 Scene perturbed(Scene scene, const Scenario& scenario, std::optional<std::uint64_t> training_seed) {
   const Arm& arm = scenario.arm(scene.arm);
   if (!arm.perturbation) return scene;
-  for (const PerturbationAxis* axis : axes_of(scenario, *arm.perturbation))
-    if (axis->change)
-      scene = axis->change(std::move(scene), scenario, arm.perturbation->level,
-                           perturbation_stream(axis->id, scene, training_seed));
+  for (const PerturbationAxis* axis : axes_of(scenario, *arm.perturbation)) {
+    if (!axis->change) continue;
+    // Its own statement: as an argument it could read the scene after the move.
+    const RandomStream stream = perturbation_stream(axis->id, scene, training_seed);
+    scene = axis->change(std::move(scene), scenario, arm.perturbation->level, stream);
+  }
   return scene;
 }
 
