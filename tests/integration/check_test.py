@@ -43,6 +43,11 @@ class Asks(Selects):
     def learn(self, demonstrations, services):
         action = demonstrations[0].steps[0].label
         return type("Still", (), {"act": lambda self, observation, instruction: action})()
+
+
+class Silent(Asks):
+    def revise(self, command, selected, demonstrations, services):
+        return selected
 """
 
 
@@ -96,6 +101,9 @@ class CheckPlugin(Case):
     def test_people_are_asked_in_scenes_as_often_as_the_option_says(self):
         (self.dir / "mine.py").write_text(SELECTS)
         self.assertEqual(self.check("mine.py:Asks", expect=0), {})
+        for method, said in (("Asks", r"asked, at the price of \d*[05] objects shown"), ("Silent", "services.human was not asked")):
+            report = json.loads(self.call("check-plugin", f"mine.py:{method}", "--json", "--python", PYTHON).stdout)
+            self.assertRegex({one["check"]: one["detail"] for one in report["findings"]}["person"], f"^{said}$")
         problems = self.check("mine.py:Asks", "questions=4")
         self.assertIn("expected at most 4 questions to a person", json.dumps(problems))
 

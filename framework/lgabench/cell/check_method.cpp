@@ -322,6 +322,7 @@ class MethodCheck {
         continue;
       }
       const auto policy = learn_from(*bench, asked, selected, scenes);
+      if (first && job_.plugin.asks == "accept") report_.ok("person", objects_shown(selected));
       for (const Instruction& instruction : selected.instructions)
         use.selections += canonical(distribution_json(instruction.selection)) + '\n';
       if (first && asked.log.lines.empty())
@@ -395,6 +396,13 @@ class MethodCheck {
                   "take names from the FeatureSpace, or return {Needs::Targets::truth} from needs() and a Selection() "
                   "from select()");
     report_.ok("cost", asked > 0 ? fmt::format("{} questions asked", asked) : "services.lm was not asked");
+  }
+
+  // What a person was asked by the end of revise().
+  static std::string objects_shown(const Selected& selected) {
+    int shown = 0;
+    for (const Instruction& instruction : selected.instructions) shown += instruction.selection.cost.human_queries;
+    return shown > 0 ? fmt::format("asked, at the price of {} objects shown", shown) : "services.human was not asked";
   }
 
   // Commands of other kinds than the first: nothing fits, and those that speak of a second set.

@@ -91,8 +91,7 @@ void add_difference(Spans& spans, const Change& change, const std::string& other
   spans.push_back(Span::number(fixed(std::abs(change.difference)), "", Emphasis::strong));
   spans.push_back(
       Span::number(fmt::format(" [{}, {}]", fixed(low_high.low), fixed(low_high.high)), "", Emphasis::detail));
-  const bool alike = fixed(std::abs(change.difference)) == fixed(0.);
-  spans.emplace_back(fmt::format(" {} {}", alike ? "from" : less ? "less than" : "more than", other));
+  spans.emplace_back(fmt::format(" {} {}", less ? "less than" : "more than", other));
 }
 
 }  // namespace
