@@ -13,35 +13,35 @@ namespace lgabench {
 /// The numbers of one action, in the order of its environment's ActionSpace.
 using Action = std::vector<double>;
 
-/// What one of them is.
+/// What one number of an action is.
 struct ActionNumber {
   std::string name, unit;  // "pose0.x", "m"; "" for a number without a unit
   double low, high;        // what is outside is clipped when the action is carried out
 };
 
-/// Two numbers that are a place in the picture: their bounds are its edges.
+/// Two numbers of an action that are a place in the picture; their bounds are the picture's edges.
 struct PicturePlace {
-  std::size_t down, across;  // which of the numbers grows along the rows, which along the columns
+  std::size_t down, across;  // indices: the number that grows down the rows, the one that grows across the columns
 };
 
-/// Where an action can lead, if there are a few such places and no others: some of its numbers are then one of a few
-/// constants, whichever place is meant.
+/// The few places that an action can lead to, if there are no others. Some of its numbers are then constants of the
+/// place.
 struct Stations {
   struct Station {
-    Vec2 seen;                   // where a picture shows it: x down, y across, as numbers of the first of places
-    std::vector<double> values;  // of `numbers`
+    Vec2 seen;                   // where a picture shows it: x down, y across, in the unit of the first place
+    std::vector<double> values;  // one for each of `numbers`
   };
-  std::vector<std::size_t> numbers;  // which of an action's
+  std::vector<std::size_t> numbers;  // indices into an action's numbers
   std::vector<Station> all;          // empty: an action leads anywhere
 };
 
 /// What all actions of a task have in common. A value.
 struct ActionSpace {
   std::vector<ActionNumber> numbers;
-  /// Numbers that are a unit vector together, and are not clipped but normalised: four are a quaternion x, y, z, w, two
-  /// the cosine and the sine of an angle.
+  /// Indices of numbers that are a unit vector together, which is normalised, not clipped. Four are a quaternion x, y,
+  /// z, w; two are the cosine and the sine of an angle.
   std::vector<std::vector<std::size_t>> rotations;
-  /// The first is where the action begins.
+  /// Where the action leads in the picture. It begins at the first place.
   std::vector<PicturePlace> places;
   Stations stations = {};
 
@@ -49,24 +49,24 @@ struct ActionSpace {
 };
 
 /// {"numbers": [{"name", "unit", "low", "high"}, ...], "rotations": [[index, ...], ...], "places": [[down, across],
-/// ...]}; where there are stations {..., "stations": {"numbers": [index, ...], "all": [{"seen": [down, across],
-/// "values":
-/// [...]}, ...]}}
+/// ...]}, and where there are stations "stations": {"numbers": [index, ...], "all": [{"seen": [down, across], "values":
+/// [...]}, ...]}.
 Json to_json(const ActionSpace& space);
-/// @throws InputError for an index that there is not, a rotation of neither two numbers nor four, or a
-/// station with another number of values than of numbers.
+/// @throws InputError for an index out of range, a rotation of neither two numbers nor four, or a station whose values
+/// are not as many as its numbers.
 ActionSpace read_action_space(const JsonReader& reader);
 
 /// The action that is carried out: numbers clipped to their bounds, rotations normalised.
-/// @throws MethodError for another number of them, one that is not finite as a float, or a rotation of norm below 1e-6.
+/// @throws MethodError for too few or too many numbers, one that is not finite as a float, or a rotation of norm below
+/// 1e-6.
 Action executable(const ActionSpace& space, const Action& action);
 
-/// As files, labels and learners have it: rounded to float, quaternions with w >= 0, since q and -q turn alike and a
-/// regression target must be unique. @pre as many numbers as the space has.
+/// The action as files, labels and learners have it: rounded to float, with w >= 0 in quaternions. (q and -q turn
+/// alike, and a regression target must be unique.) @pre `action` has as many numbers as the space.
 Action as_stored(const ActionSpace& space, const Action& action);
 
-/// Where a place of the action lies in a picture: x its column, y its row, in pixels, 0 at the picture's corner; within
-/// the picture. @pre as for as_stored().
+/// Where a place of the action lies in a picture, clipped to the picture: x is its column and y its row, in pixels from
+/// the picture's corner. @pre as for as_stored().
 Vec2 in_picture(const ActionSpace& space, const PicturePlace& place, const Action& action, PictureSize picture);
 
 }  // namespace lgabench

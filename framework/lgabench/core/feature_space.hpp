@@ -21,9 +21,9 @@ FeatureSpace load_feature_space(const std::string& id);
 struct FeatureSet {
   std::vector<std::string> object_types, textures;  // in the order of the feature space
 
-  /// Both features are in it.
+  /// Whether both features are in the set.
   bool contains(const std::string& object_type, const std::string& texture) const;
-  /// Nothing can belong to it.
+  /// Whether no object can belong to the set.
   bool empty() const { return object_types.empty() || textures.empty(); }
 };
 bool operator==(const FeatureSet& a, const FeatureSet& b);

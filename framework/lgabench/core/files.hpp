@@ -11,31 +11,32 @@ namespace lgabench {
 
 namespace fs = std::filesystem;
 
-/// Whether a file may be a symbolic link: what a person names may, a file of a run is none.
+/// Whether a file may be a symbolic link. A file that a person names may be one, a file of a run may not.
 enum class Links { followed, refused };
 
-/// The bytes of a regular file: no device, pipe or directory, which could hold a program up or have no end.
+/// The bytes of a regular file: no device, pipe or directory, which could block a program or have no end.
 /// @throws InputError naming the file and the system's reason, also for more than `most` bytes.
 std::string read_file(const fs::path& file, Links links = Links::followed,
                       std::uintmax_t most = std::uintmax_t{1} << 30);
 
-/// @throws InputError naming the first entry of a directory that is neither a regular file nor a directory. What is not
-/// there holds none.
+/// @throws InputError naming the first entry of a directory that is neither a regular file nor a directory. A missing
+/// directory has no entries.
 void expect_plain_entries(const fs::path& directory);
 
-/// `later`: the file is of a directory that gets its name after a sync_file_system(), so that nobody reads it before.
+/// When a file is on the disk. `later` is for a directory that gets its name only after sync_file_system(): nobody
+/// reads it before.
 enum class Sync { now, later };
 
 /// Writes to a temporary beside `file`, fsyncs, renames: a reader sees the old bytes or the new, unless synced later.
 /// Makes missing parent directories. @throws InputError naming the file and the system's reason (a full disk included).
 void write_file(const fs::path& file, std::string_view bytes, Sync sync = Sync::now);
 
-/// Appends to `file`, which is made if need be, and fsyncs. What fails is taken back: the file is then as it was.
+/// Appends to `file`, which is made if need be, and fsyncs. A failed append is taken back: the file is then as it was.
 /// @throws InputError naming the file and the system's reason.
 void append_file(const fs::path& file, std::string_view bytes);
 
-/// Whether write_file() left it behind when its process was killed; removing those of a directory that nobody writes
-/// into.
+/// Whether write_file() left the file behind when its process was killed. remove_temporaries() deletes such files of a
+/// directory that nobody writes into.
 bool is_temporary(const fs::path& file);
 void remove_temporaries(const fs::path& directory);
 

@@ -13,20 +13,21 @@ namespace lgabench {
 
 using Json = nlohmann::json;  // keys sorted, so a dump is canonical
 
-/// Parses a text from outside, the one way in for all of them. Refused besides what is no JSON: more than 100 levels,
-/// a member named twice in one object, a number outside the range of a double. `where` is the file, or "FILE: line 3".
-/// @throws InputError naming it, the place and what was expected.
+/// Parses a text from outside lgabench; every such text comes in here. Besides what is no JSON it refuses more than 100
+/// levels, a member named twice in one object, and a number outside the range of a double. `where` is the file, or
+/// "FILE: line 3".
+/// @throws InputError naming `where`, the place and what was expected.
 Json parse_json(std::string_view text, const std::string& where);
 
-/// Likewise; null for what parse_json refuses.
+/// The text's JSON, or null for a text that parse_json() refuses.
 Json json_or_null(std::string_view text);
 
-/// parse_json of a file of at most 256 MiB; of at most 8 MiB, which take some 150 in memory, where no link is followed:
-/// one of a run or a board, which somebody else may have written. @throws InputError likewise, or why it could not be
+/// Parses a file of at most 256 MiB. Where links are refused, the limit is 8 MiB, which take some 150 MiB in memory:
+/// somebody else may have written a run's or a board's file. @throws InputError likewise, or why the file cannot be
 /// read.
 Json read_json(const std::filesystem::path& file, Links links = Links::followed);
 
-/// parse_json of each line of a text; a last line needs no end. @throws InputError naming `file` and the line.
+/// Parses each line of a text; a last line needs no end. @throws InputError naming `file` and the line.
 std::vector<Json> parse_json_lines(std::string_view text, const std::string& file);
 
 /// One line, sorted keys, shortest round-trip numbers: the text that hashes and files use. @throws InputError on
@@ -44,9 +45,9 @@ class JsonReader {
   /// The value as it is; belongs to the document.
   const Json& json() const { return value_; }
   const std::string& file() const { return file_; }
-  /// Its JSON pointer in the file.
+  /// The value's JSON pointer in the file.
   const std::string& place() const { return place_; }
-  /// It is an object with that member.
+  /// Whether the value is an object with that member.
   bool has(const std::string& key) const { return value_.is_object() && value_.contains(key); }
   /// Member of an object. @throws InputError where missing.
   JsonReader at(const std::string& key) const;

@@ -1,4 +1,4 @@
-// What a command's words mean, of a command or of a Selection: sets of objects, and which of several is the one.
+// The meaning of a command's words, or of a Selection: sets of objects, and which of several is meant.
 #pragma once
 #include <optional>
 #include <string>
@@ -29,7 +29,7 @@ struct Which {
 bool operator==(const Which& a, const Which& b);
 std::string to_string(Which::Rule rule);
 
-/// A union of products of object types and textures and, where the words say so, which of several that belong. One
+/// A union of products of object types and textures and, where the words say so, which of several objects is meant. One
 /// product without `which` is a meaning of the paper (section 3.1).
 struct Meaning {
   std::vector<FeatureSet> sets{1};  // one at least
@@ -44,15 +44,15 @@ struct Meaning {
   /// The one product. @throws MethodError where there is more to the meaning.
   FeatureSet& product();
   const FeatureSet& product() const;
-  /// The object is in any of the sets. Which of several is meant depends on the scene: grounded().
+  /// Whether the object is in any of the sets. Which of several is meant depends on the scene: grounded().
   bool belongs(const std::string& object_type, const std::string& texture) const;
-  /// No object can belong.
+  /// Whether no object can belong.
   bool empty() const;
 };
 bool operator==(const Meaning& a, const Meaning& b);
 
-/// The object's place in the order of `which`, from 0; as many as the order has names for one that it does not name. An
-/// order names object types or textures: those of which the sets hold more of its names, since a name may be both.
+/// The object's place in the order of `which`, from 0, or the order's length for an object that it does not name. A
+/// name may be both an object type and a texture: the order is of the kind of which the sets hold more of its names.
 /// @pre the rule is first_in
 std::size_t place_in_order(const Meaning& meaning, const std::string& object_type, const std::string& texture);
 
@@ -64,18 +64,18 @@ struct Placed {
 /// All visible instances of an observation, in the table's order.
 std::vector<Placed> placed(const Observation& observation);
 
-/// Ids of the visible instances that are meant, in the table's order: all that belong or, with `which`, the one that
-/// the rule names, and those within half a pixel of it or of the same place in `order`. A centre is the mean row and
-/// column of an instance's visible pixels. Instances that match `of` are references and no candidates; each candidate
-/// counts from the reference nearest to it. Without a reference in view nothing is meant. Place types (`is_place`) are
-/// no candidates of a rule.
+/// Ids of the visible instances that are meant, in the table's order. Without `which`, all that belong are meant. With
+/// it, the one that the rule names is meant, and those within half a pixel of it or of the same place in `order`. A
+/// centre is the mean row and column of an instance's visible pixels. Instances that match `of` are references and no
+/// candidates; each candidate counts from its nearest reference. Where a rule has no reference in view, nothing is
+/// meant. Place types (`is_place`) are no candidates of a rule.
 std::vector<std::uint8_t> grounded(const Meaning& meaning, const Observation& observation);
 std::vector<std::uint8_t> grounded(const Meaning& meaning, const std::vector<Placed>& visible);
 
-/// The object type is that of the place which things are brought to, and never the thing that a rule means.
+/// Whether the object type is that of the place which things are brought to. A rule never means a place.
 bool is_place(const std::string& object_type);
 
-/// One product as a FeatureSet, as it has always been written; else {"sets": [...], "which": {"rule", "of", "order"}}.
+/// One product is written as a FeatureSet, any other meaning as {"sets": [...], "which": {"rule", "of", "order"}}.
 Json to_json(const Meaning& meaning);
 
 /// Reads what to_json() writes; in lists also "ALL" and {"except": [...]}. @throws InputError with file and place for
@@ -83,7 +83,7 @@ Json to_json(const Meaning& meaning);
 /// order of object types and textures both, or more than 100 sets.
 Meaning read_meaning(const JsonReader& reader, const FeatureSpace& space);
 
-/// Likewise from a method, whose names nobody has checked against a space.
+/// Reads a method's meaning, whose names nobody has checked against a space.
 Meaning read_unchecked_meaning(const JsonReader& reader);
 
 }  // namespace lgabench

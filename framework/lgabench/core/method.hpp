@@ -1,6 +1,6 @@
-// The interface of a method: what a plugin implements. No LibTorch, no OpenCV here.
-// The host calls it from one thread; references are valid during the call; what it returns is owned by the caller. What
-// it throws fails the cell, or the episode if act() threw it, with what() as the reason; an InputError says that an
+// The interface of a method: what a plugin implements. It needs neither LibTorch nor OpenCV.
+// The host calls a method from one thread. References are valid during the call, and the caller owns what is returned.
+// An exception fails the cell, or the episode if act() threw it, with what() as the reason. An InputError says that an
 // option or a file is wrong, not the method.
 #pragma once
 #include <cstdint>
@@ -31,28 +31,29 @@ struct Step {
   Action label;
 };
 
-/// The oracle's episode for one instruction: with `Needs::noisy_per_clean` the recovery steps follow the first.
+/// The oracle's episode for one instruction. With `Needs::noisy_per_clean`, recovery steps follow the first step.
 struct Demonstration {
   Instruction instruction;
   std::vector<Step> steps;
 };
 
-/// Id of the instance that the first step's label takes or, in a sweep, pushes: the visible one within two pixels of
-/// the action's first place that is nearest to it, else the first one met on the straight way to the second place, else
-/// the nearest. Place types (`is_place`) never are. None where nothing else is in view.
+/// Id of the instance that the first step's label takes or, in a sweep, pushes. It is the visible instance nearest to
+/// the action's first place if that lies within two pixels, else the first instance on the straight way to the second
+/// place, else the nearest. A place type (`is_place`) is never taken. None where no other instance is in view.
 std::optional<std::uint8_t> taken(const Demonstration& demonstration, const ActionSpace& actions);
 
 /// What a method asks of the data it learns from.
 struct Needs {
-  /// Training targets are drawn from the method's own Selection, or from the true distribution.
+  /// What training targets are drawn from: the method's own Selection, or the true distribution.
   enum class Targets { selected, truth } targets = Targets::selected;
-  /// DART (Laskey et al. 2017): noisy rollouts for each clean demonstration; the state each leads to is labelled by
-  /// the oracle and added. Rollout k of n executes the action with sigma = noise_max * k / n.
+  /// Noisy rollouts for each clean demonstration (DART, Laskey et al. 2017). The oracle labels the state that a rollout
+  /// leads to, which is added. Rollout k of n executes the action with Gaussian noise of sigma = noise_max * k / n,
+  /// where 1 is half of a number's range, or half a turn.
   int noisy_per_clean = 0;
   double noise_max = 0;
-  /// revise() is called.
+  /// Whether revise() is called.
   bool revise = false;
-  /// Observations say which instance throws which shadow (Observation::shadows): for repaint().
+  /// Whether observations say which instance throws which shadow (Observation::shadows). repaint() uses that.
   bool shadows = false;
 };
 
@@ -60,11 +61,11 @@ struct Needs {
 class TrainingLog {
  public:
   virtual ~TrainingLog() = default;
-  /// After each pass over the data: passes so far, optimiser steps so far, mean loss of the pass. @throws MethodError
-  /// outside of learn().
+  /// Call it after each pass over the data, with the passes and optimiser steps so far and the pass's mean loss.
+  /// @throws MethodError outside of learn().
   virtual void epoch(int epochs, long long steps, double loss) = 0;
-  /// Before it, any number of times: another value of that pass, as a validation loss. A report draws a curve of each
-  /// name: 1 to 40 letters, digits and "_".
+  /// Call it before epoch(), any number of times, with another value of that pass, such as a validation loss. A report
+  /// draws a curve for each name, which has 1 to 40 letters, digits and "_".
   virtual void curve(const std::string& name, double value) { static_cast<void>(name), static_cast<void>(value); }
 };
 
@@ -92,39 +93,41 @@ class Policy {
   virtual ~Policy() = default;
   /// Called before each episode.
   virtual void reset() {}
-  /// The one action of an episode: a function of its arguments and of what was learned, so that the same scene gives
-  /// the same action whatever was played before. `observation` comes from a scene that was not demonstrated;
-  /// `instruction` may hold an utterance that was not, and any Selection, an empty one or the true one included.
-  /// @returns the numbers of Services::actions. Others, or one that is not finite: the episode fails as method_error.
+  /// Chooses the one action of an episode. The action must be a function of the arguments and of what was learned: the
+  /// same scene gives the same action, whatever was played before. `observation` comes from a scene that was not
+  /// demonstrated. `instruction` may hold an utterance that was not demonstrated, and any Selection, even an empty or
+  /// the true one.
+  /// @returns the numbers of Services::actions. If one is missing, surplus or not finite, the episode fails as
+  /// method_error.
   virtual Action act(const Observation& observation, const Instruction& instruction) = 0;
-  /// Whether all that the last act() made its action of was, to the byte, an input that the policy learned from. None
-  /// where it does not tell.
+  /// Whether the last act()'s whole input was, to the byte, one that the policy learned from. None where the policy
+  /// does not tell.
   virtual std::optional<bool> seen_in_training() const { return std::nullopt; }
-  /// What the last act() read of the scene: the pictures themselves, as they were after all that prepares them. Asked
-  /// after some episodes, for a report's page; no result depends on it. Nothing where the policy does not tell.
+  /// What the last act() read of the scene: the pictures themselves, after all preparation. The host asks after some
+  /// episodes, for a report's page; no result depends on the reply. Empty where the policy does not tell.
   virtual Shown shown() const { return {}; }
-  /// What was learned, as bytes of which Method::restore() makes a policy that acts alike: asked of a run with
-  /// --keep-policy, after the scored episodes. None where it cannot be saved. 64 MiB at most are kept.
+  /// What was learned, as bytes from which Method::restore() makes a policy that acts alike. A run with --keep-policy
+  /// asks for them after the scored episodes, and keeps 64 MiB at most. None where the policy cannot be saved.
   virtual std::optional<std::string> saved() const { return std::nullopt; }
 };
 
-/// A method of state abstraction and imitation. Made anew, in a fresh process, for every cell by its default
-/// constructor; called in the order needs, select for each of the scenario's commands, revise likewise, learn. One
-/// thread. Everything that is random comes from Services::seed: the same seed gives the same bytes.
+/// A method of state abstraction and imitation. For every cell the host makes a new one by its default constructor, in
+/// a fresh process. From one thread it calls needs, select for each of the scenario's commands, revise likewise, and
+/// learn. Everything that is random must come from Services::seed: the same seed gives the same bytes.
 class Method {
  public:
   virtual ~Method() = default;
-  /// What its demonstrations shall be like. `options` as in Services. Called first.
+  /// What the method's demonstrations shall be like. Called first, with the `options` of Services.
   virtual Needs needs(const Json& options) const = 0;
   /// Feature abstraction (paper, section 3.1): which object types and textures of `space` could the command mean? A
-  /// method that selects nothing returns a Selection of provenance none. Names outside the space fail the cell; an
-  /// empty Selection, or one of which no layout shows anything, is an answer, and fails it as abstraction_empty if
-  /// targets are drawn from it. A run says itself, from what was asked, where it comes from and what it cost.
+  /// method that selects nothing returns a Selection of provenance none. Names outside the space fail the cell. An
+  /// empty Selection, or one of which no layout shows anything, is an answer; if targets are drawn from it, the cell
+  /// fails as abstraction_empty. The host fills in provenance and cost, from the questions that were asked.
   virtual Selection select(const Command& command, const FeatureSpace& space, Services& services) = 0;
-  /// Feature abstraction with what was shown: another Selection for the command in place of what select() returned,
-  /// from which the targets were drawn. Called for each command once the demonstrations are there, where needs() asks
-  /// for it. From then on it is the command's in every Instruction, and what the run records and measures; what is
-  /// asked meanwhile is added to its cost. Otherwise as select().
+  /// Feature abstraction after the demonstrations: returns the Selection that replaces `selected`, from which the
+  /// targets were drawn. Called for each command if needs() asks for it. From then on every Instruction of the command
+  /// holds the new Selection, and the run records and measures it. Questions that are asked meanwhile add to its cost.
+  /// All else is as in select().
   virtual Selection revise(const Command& /*command*/, const Selection& selected,
                            const std::vector<Demonstration>& /*demonstrations*/, Services& /*services*/) {
     return selected;
@@ -132,8 +135,8 @@ class Method {
   /// Learns from the demonstrations, the cell's number of them for each seen command in turn, in the order of their
   /// scenes. The policy must not refer to them afterwards. @returns never null.
   virtual std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) = 0;
-  /// In place of all of the above, in another process with the same options and seed: the policy whose saved() gave
-  /// these bytes. @returns never null. @throws InputError for bytes that it did not give.
+  /// Makes the policy whose saved() gave these bytes. Called in place of all of the above, in another process, with the
+  /// same options and seed. @returns never null. @throws InputError for any other bytes.
   virtual std::unique_ptr<Policy> restore(const std::string& /*saved*/, Services& /*services*/) {
     throw MethodError("a policy of this method cannot be restored");
   }

@@ -30,15 +30,14 @@ struct Observation {
   std::vector<std::uint8_t> rgb;  // rows x columns x 3
   std::vector<std::uint8_t> ids;  // rows x columns; 0 where there is no object
   std::vector<Instance> instances;
-  /// rows x columns; bit k: the object of row k of `instances` keeps light from what the pixel shows, apart from
-  /// whatever else does. Empty unless it was asked for (Needs::shadows). What repaint() takes an object's shadow away
-  /// by.
+  /// rows x columns. Bit k says that the object in row k of `instances` keeps light from what the pixel shows, whatever
+  /// else does so too. Empty unless a method asks for it (Needs::shadows). repaint() takes shadows away by it.
   std::vector<std::uint16_t> shadows = {};
 };
 
-/// Of a colour in the light, in 1/256, what it has in the shadow of an object.
+/// Brightness of a colour in an object's shadow, in 1/256 of its brightness in the light.
 constexpr int shadow_brightness = 141;
-/// Instances that `shadows` can tell apart.
+/// How many instances `shadows` can tell apart.
 constexpr std::size_t most_shadows = 16;
 
 }  // namespace lgabench

@@ -1,5 +1,5 @@
-// The interface of a perturbation axis that a plugin adds: it changes what is perceived, and nothing else. Its process
-// is told the observation, the level and a stream; never the scene, the command or the truth.
+// The interface of a perturbation axis that a plugin adds: it changes what is perceived, and nothing else. The plugin's
+// process is told the observation, the level and a stream; never the scene, the command or the truth.
 #pragma once
 #include <lgabench/core/observation.hpp>
 #include <lgabench/core/random.hpp>
@@ -11,10 +11,10 @@ class ObservationPerturbation {
  public:
   virtual ~ObservationPerturbation() = default;
 
-  /// What is perceived at that level, 1 or more, in place of `seen`: a picture of the same size, ids of listed
-  /// instances alone, names of object types and textures that the feature space has. How many pixels an instance has is
-  /// counted by the host. `stream` is the scene's and the same at every level: it gives the direction of a change, and
-  /// the level gives its size. The same arguments give the same bytes, whatever was asked before.
+  /// Returns what is perceived at that level, 1 or more, in place of `seen`: a picture of the same size, ids of listed
+  /// instances alone, and names of object types and textures that the feature space has. The host counts each
+  /// instance's pixels itself. `stream` is the scene's and the same at every level: draw the direction of a change from
+  /// it, and let the level give the size. The same arguments must give the same bytes, whatever was asked before.
   virtual Observation perceive(Observation seen, int level, RandomStream stream) = 0;
 };
 

@@ -1,4 +1,4 @@
-// The Selection: which features matter, by whom it was said, and what that cost.
+// The Selection: which features matter, who said so, and what asking them cost.
 #pragma once
 #include <optional>
 #include <string>
@@ -46,7 +46,7 @@ struct Command {
   std::optional<SecondRole> second = std::nullopt;  // what it speaks of beside the target; none for most tasks
 };
 
-/// The features of that set.
+/// The features of a task's second set.
 struct SecondSet : FeatureSet {
   std::string role;  // SecondRole::id
 };
@@ -62,10 +62,10 @@ struct Selection {
   std::string asked_as;  // the wording that was answered
   SelectionCost cost;
 
-  /// Nothing can be shown: no target, or a second set asked for and none selected. Such a cell is not trained.
+  /// Whether nothing can be shown: the target is empty, or the task's second set is. Such a cell is not trained.
   bool empty() const { return target.empty() || (second && second->empty()); }
-  /// The object's features are among those that target or second set name, which are never crossed. Which objects a
-  /// goal mask keeps depends on the scene, where `target.which` says so: grounded().
+  /// Whether the target, or the second set, names both of the object's features. With `target.which`, the objects that
+  /// a goal mask keeps depend on the scene as well: see grounded().
   bool belongs(const std::string& object_type, const std::string& texture) const {
     return target.belongs(object_type, texture) || (second && second->contains(object_type, texture));
   }
@@ -75,7 +75,7 @@ Json to_json(const Selection& selection);
 
 /// The distribution alone, which is what scenes depend on: {"target": meaning}, and the second set under its role's id.
 Json distribution_json(const Selection& selection);
-/// Likewise, from what to_json() wrote.
+/// The distribution of a Selection that to_json() wrote.
 Json distribution_of(Json selection);
 
 /// Reads a distribution whose second set, if it has one, is named as `second` says; provenance and cost are left at

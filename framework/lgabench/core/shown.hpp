@@ -14,7 +14,7 @@ constexpr int page_step(PictureSize picture) { return picture.columns < 512 ? 1 
 
 using Rgb = std::array<std::uint8_t, 3>;
 
-/// How a number of a mask is shown: white above 0, red below, where something is to be avoided, else black.
+/// The colour of a mask's number: white above 0, red below 0, where something is to be avoided, and black at 0.
 Rgb mask_colour(double value);
 
 struct ShownPicture {
@@ -23,9 +23,9 @@ struct ShownPicture {
   std::vector<std::uint8_t> rgb;  // rows x columns x 3
 };
 
-/// Of a mask's rows x columns numbers, in mask_colour(). `values` is not kept.
+/// A picture of a mask's rows x columns numbers, in mask_colour(). `values` is not kept.
 ShownPicture shown_mask(std::string name, PictureSize size, const float* values);
-/// Of rows x columns x 3 numbers from 0 to 1, clipped.
+/// A picture of rows x columns x 3 numbers, clipped to 0 to 1.
 ShownPicture shown_colours(std::string name, PictureSize size, const float* values);
 
 struct Shown {
