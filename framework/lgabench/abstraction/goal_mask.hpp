@@ -15,13 +15,13 @@ enum class Instances {
   first  // the one whose first pixel comes first, row by row: "an unambiguous abstract state" (paper, section 3.2)
 };
 
-/// Numbers 0 and 1, row-major, as many as pixels: 1 on the visible ones of every instance that is meant as the target
-/// (grounded()) or that the second set holds. All 0 where nothing in view is.
+/// The goal mask: rows x columns of 0 and 1, row-major. It is 1 on the visible pixels of every instance that is meant
+/// as the target (grounded()) or that the second set holds, and all 0 if none of these is in view.
 /// @throws InputError if the ids are not as many as the size says, or name an instance that the table lacks.
 std::vector<std::uint8_t> goal_mask(const Observation& observation, const Selection& selection,
                                     Instances instances = Instances::all);
 
-/// Likewise, into `mask`, which is resized: nothing is allocated where it has the capacity.
+/// Writes the goal mask into `mask`, which is resized: nothing is allocated if it has the capacity.
 void goal_mask(const Observation& observation, const Selection& selection, std::vector<std::uint8_t>& mask,
                Instances instances = Instances::all);
 
@@ -30,7 +30,8 @@ void role_mask(const Observation& observation, const Selection& selection, std::
                Instances instances = Instances::all);
 constexpr std::uint8_t target_role = 1, second_role = 2;
 
-/// 1 on any object: what a segmentation without language gives. `left_out`: an object type that stays 0, "" for none.
+/// The mask that a segmentation without language gives: 1 on any object. Objects of the type `left_out` stay 0, "" for
+/// none.
 std::vector<std::uint8_t> object_mask(const Observation& observation, const std::string& left_out = "");
 void object_mask(const Observation& observation, std::vector<std::uint8_t>& mask, const std::string& left_out = "");
 

@@ -17,10 +17,11 @@ Selection select_features(const Command& command, const FeatureSpace& space, Lan
 /// The Selection is empty where the model gave no meaning that can be read. @throws MethodError as select_features().
 Selection select_meaning(const Command& command, const FeatureSpace& space, LanguageModel& model);
 
-/// Either, or select_named(), as `meaning` says: "flat", "structured" or "named" (LGABENCH_MEANING_OPTION).
+/// Calls select_features(), select_meaning() or select_named(), as `meaning` says: "flat", "structured" or "named"
+/// (LGABENCH_MEANING_OPTION).
 Selection select_as_asked(const std::string& meaning, const Command& command, const FeatureSpace& space,
                           LanguageModel& model);
-/// Likewise, as the option `meaning` of services.options says.
+/// Does so as the option `meaning` of services.options says.
 Selection select_as_asked(const Command& command, const FeatureSpace& space, Services& services);
 
 }  // namespace lgabench

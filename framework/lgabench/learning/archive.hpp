@@ -10,32 +10,32 @@
 
 namespace lgabench {
 
-/// Writes values one after another, or reads them in that order: one function of a class names its members to it and
-/// does both. Numbers are as this machine has them in memory. One thread.
+/// Writes values one after another, or reads them in that order. A class names its members to an archive in one
+/// function, which then does both. Numbers are stored as this machine has them in memory. One thread.
 class Archive {
  public:
-  /// Writes.
+  /// An archive that writes.
   Archive() = default;
-  /// Reads these bytes.
+  /// An archive that reads these bytes.
   explicit Archive(std::string bytes) : reads_(true), bytes_(std::move(bytes)) {}
 
   bool reads() const { return reads_; }
   /// What was written.
   const std::string& bytes() const { return bytes_; }
 
-  /// @throws InputError where the bytes end before.
+  /// Writes or reads a value. @throws InputError where the bytes end too early.
   template <class T>
   std::enable_if_t<std::is_trivially_copyable_v<T>> operator()(T& value) {
     move(&value, sizeof value);
   }
-  /// One byte. @throws InputError for another than 0 or 1, which no bool may hold.
+  /// A bool is one byte. @throws InputError for a byte other than 0 or 1, which no bool may hold.
   void operator()(bool& value) {
     std::uint8_t byte = value ? 1 : 0;
     (*this)(byte);
     if (byte > 1) fail();
     value = byte == 1;
   }
-  /// Their number, then each.
+  /// A vector is its length, then each value.
   template <class T>
   void operator()(std::vector<T>& values) {
     const std::uint64_t count = counted(values.size());
@@ -46,17 +46,17 @@ class Archive {
       for (T& value : values) (*this)(value);
     }
   }
-  /// Likewise.
+  /// A text is its length, then each byte.
   void operator()(std::string& text) {
     const std::uint64_t count = counted(text.size());
     if (reads_) text.resize(static_cast<std::size_t>(count));
     move(text.data(), text.size());
   }
-  /// After the last value was read. @throws InputError for bytes that nothing was made of.
+  /// Call it after the last value was read. @throws InputError if bytes are left over.
   void expect_end() const {
     if (reads_ && at_ != bytes_.size()) fail();
   }
-  /// For values that were read and do not fit. @throws InputError
+  /// Call it for values that were read and do not fit. @throws InputError, always.
   [[noreturn]] static void fail() { throw InputError("saved policy: not what this method saves"); }
 
  private:

@@ -1,4 +1,4 @@
-// Behaviour cloning, what every shipped method does: they differ in what the learner sees and in who selects.
+// Behaviour cloning, as every shipped method does it. Methods differ in what the learner sees and in who selects.
 #pragma once
 #include <memory>
 #include <vector>
@@ -8,7 +8,7 @@
 #include <lgabench/learning/featurizer.hpp>
 #include <lgabench/learning/learner.hpp>
 
-/// Members of a descriptor's options that every cloning method has: LGABENCH_METHOD(..., "{" LGABENCH_TRAINING_OPTIONS
+/// The options that every cloning method has, for its descriptor: LGABENCH_METHOD(..., "{" LGABENCH_TRAINING_OPTIONS
 /// "}").
 #define LGABENCH_TRAINING_OPTIONS                                                                        \
   R"("epochs": {"framework": true, "default": 750, "min": 1, "words": ["converged"], )"                  \
@@ -46,8 +46,8 @@
 /// Options of a method whose policy sees a goal mask.
 #define LGABENCH_MASK_OPTIONS LGABENCH_MASK_OPTIONS_WITH("", R"(, "needs": {"signed": {"policy": ["regression"]}})", "")
 
-/// Likewise, for a method that sees one with some of its options alone: the members that `instances`, `mask` and
-/// `policy` have beside these, each as ", " and JSON or "".
+/// Options of a method that sees a goal mask with some of its options alone. The arguments are further members of
+/// `instances`, `mask` and `policy`, each ", " and JSON or "".
 #define LGABENCH_MASK_OPTIONS_WITH(of_instances, of_mask, of_policy)                                              \
   R"("instances": {"framework": true, "default": "all", "values": ["all", "first"], )"                            \
   R"("help": "if several visible instances match one role: all are in the mask, or the first, row by row",)"      \
@@ -74,35 +74,36 @@
 
 namespace lgabench {
 
-/// A subclass overrides select(), inputs() if its network sees more or other things than the goal mask, learner() if it
-/// has a network of its own, and needs() if it asks for more than demonstrations of its own Selection's targets. One
-/// thread.
+/// A subclass overrides select(). It overrides inputs() if its network sees more or other things than the goal mask,
+/// learner() if it has a network of its own, and needs() if it asks for more than demonstrations of its own Selection's
+/// targets. One thread.
 class CloningMethod : public Method {
  public:
   Needs needs(const Json&) const override { return {}; }
-  /// Trains the learner on every step of every demonstration. The policy tells whether an input, to the byte, stood in
-  /// training. @throws InputError for a text without a sentence embedding, where the encoder's weights are not there;
-  /// for inputs() that the option `policy` cannot use.
+  /// Trains the learner on every step of every demonstration. The policy tells whether an input is, to the byte, one of
+  /// training.
+  /// @throws InputError for inputs() that the option `policy` cannot use, and for a text without a sentence embedding
+  /// if the encoder's weights are missing.
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override;
-  /// Not of a method whose inputs() are made of what it selected, but for a feature space.
+  /// Restores the learner and the feature space. A policy whose inputs() depend on other things that were selected or
+  /// demonstrated was never saved.
   std::unique_ptr<Policy> restore(const std::string& saved, Services& services) override;
 
  protected:
-  /// What the learner sees; the goal mask, and the picture where the method has the option `picture` and it says so,
-  /// unless a subclass says otherwise. `options` as in Services.
+  /// What the learner sees: by default the goal mask, and the picture where the option `picture` says so. `options` are
+  /// those of Services.
   virtual PolicyInputs inputs(const Json& options) const;
-  /// How often each step is copied, for augment(); not at all unless a subclass says so. The unaltered steps are
-  /// learned from as well. Optimiser steps stay as many (LGABENCH_COPIES_OPTION), and what a learner takes for the
-  /// usual picture is that of the unaltered steps.
+  /// How often each step is copied for augment(), by default 0. The learner learns from the unaltered steps as well.
+  /// The number of optimiser steps stays the same (see LGABENCH_COPIES_OPTION), and so does the usual picture, which is
+  /// that of the unaltered steps.
   virtual int copies(const Json& options) const;
-  /// Makes another step of a copy: repaint() its observation, say. `selection`: what a goal mask of it is made of;
-  /// copies count from 0; `stream` is the copy's own, named by Services::seed.
+  /// Alters a copy of a step, for example by repaint() of its observation. Its goal mask is made of `selection`. Copies
+  /// count from 0, and `stream` is the copy's own, named by Services::seed.
   virtual void augment(Step& step, const Selection& selection, int copy, RandomStream& stream) const;
-  /// The rows that it is trained on, made of `clean`: a row for each step of each demonstration, in their order, and
-  /// behind them the copies. Those rows alone unless a subclass adds others.
+  /// The rows that the learner is trained on. `clean` has a row for each step of each demonstration, in their order,
+  /// and behind them the copies. By default these are all; a subclass may add others.
   virtual Samples training_rows(Samples clean, const Services& services) const;
-  /// What is trained on rows of that shape; the one that the option `policy` names unless a subclass has its own. It
-  /// may outlive the method.
+  /// The learner for rows of that shape, by default the one that the option `policy` names. It may outlive the method.
   virtual std::unique_ptr<Learner> learner(const SampleShape& shape, const Services& services) const;
 };
 

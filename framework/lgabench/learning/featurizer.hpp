@@ -30,42 +30,44 @@ struct PolicyInputs {
   enum class Text {
     none,
     utterance,  // the sentence embedding of the instruction's utterance
-    selection   // that of its Selection in words (selection_text) in `space`
+    selection   // the sentence embedding of its Selection in words (selection_text) in `space`
   } text = Text::none;
   FeatureSpace space{};  // for Text::selection alone
-  /// Utterance -> the Selection that its mask is made of in place of the instruction's. Empty, or with every utterance
-  /// that will be given. Held by value: the policy keeps it when the method is gone.
+  /// For each utterance, the Selection that the mask is made of in place of the instruction's. It is empty or has every
+  /// utterance that will be given. It is held by value: the policy keeps it when the method is gone.
   std::map<std::string, Selection> masks{};
-  std::string left_out{};  // "": nothing
+  std::string left_out{};  // an object type that `segmentation` leaves out; "": none
 
   Instances instances = Instances::all;
-  /// The goal mask is -1 where an object is to be avoided and not the target, 1 on the target alone; else 1 on both.
+  /// If true, the goal mask is 1 on the target alone and -1 where an object is to be avoided and not the target. If
+  /// false, it is 1 on both.
   bool signed_mask = false;
   PictureSize mask_size = input_size, rgb_size = input_size;
-  /// The method's own picture: what all of the above is made of in place of the observation, given the Selection that
-  /// the mask is made of. A function of its arguments that refers to no method, which may be gone. Null: none.
+  /// Makes the observation that all of the above is made of, given the seen one and the mask's Selection. It must be a
+  /// function of its arguments alone and refer to no method, which may be gone. Null: the seen observation is used.
   std::function<Observation(const Observation&, const Selection&, Phase)> prepare{};
-  /// `prepare` depends on what was demonstrated, which is no part of what a policy saves: it cannot be saved.
+  /// Whether `prepare` depends on the demonstrations. A saved policy does not hold these, so such a policy cannot be
+  /// saved.
   bool of_demonstrations = false;
 };
 
 /// One thread. Copies share the sentence embeddings.
 class Featurizer {
  public:
-  /// `actions`: Services::actions. @throws InputError for a text without a sentence embedding, where the encoder's
-  /// weights are not there; write() too.
+  /// `actions` are Services::actions. This and write() @throw InputError for a text without a sentence embedding if the
+  /// encoder's weights are missing.
   Featurizer(PolicyInputs inputs, ActionSpace actions);
 
   SampleShape shape() const;
-  /// What becomes of a copy of a step, of which number `row` of the unaltered ones is made, given the Selection that
-  /// its mask is made of. Copies count from 0.
+  /// Alters a copy of a step, given the Selection that its mask is made of. `row` is the number of the unaltered row
+  /// that was copied; copies count from 0.
   using Augment = std::function<void(Step&, const Selection&, int row, int copy)>;
 
-  /// A row for each step of each demonstration, in their order, with its label; behind them, copy by copy, as many rows
-  /// for each copy.
+  /// Makes a row with its label for each step of each demonstration, in their order. Behind them, copy by copy, come as
+  /// many rows for each copy.
   Samples samples(const std::vector<Demonstration>& demonstrations, int copies = 0, const Augment& augment = {});
-  /// The inputs of one row; its label stays. Allocates nothing after the first, unless `prepare` does.
-  /// @throws MethodError for an utterance that `masks` lacks. InputError for a picture whose pixels do not fit its
+  /// Writes the inputs of one row; its label stays. After its first call it allocates nothing, unless `prepare` does.
+  /// @throws MethodError for an utterance that `masks` lacks, InputError for a picture whose pixels do not fit its
   /// size.
   void write(const Observation& observation, const Instruction& instruction, Phase phase, Samples& samples, int row);
 

@@ -24,7 +24,7 @@ struct SampleShape {
 
 /// Rows of input and label, each array row-major. Copying copies all numbers.
 struct Samples {
-  /// All zeros.
+  /// Makes `count` rows of zeros.
   Samples(SampleShape of_a_row, int count);
 
   /// The numbers of one row's picture; owned by this.
@@ -40,14 +40,14 @@ struct Samples {
 
   SampleShape shape;
   int rows;
-  int unaltered;  // of the rows, the first ones: the demonstrations as they are. The others are copies that differ
-  std::vector<std::vector<float>> pictures;  // of each picture rows x its rows x columns x channels
+  int unaltered;  // how many rows, the first ones, are demonstrations as they are; the others are altered copies
+  std::vector<std::vector<float>> pictures;  // each: rows x the picture's rows x columns x channels
   std::vector<float> text;                   // rows x 384, or empty
-  std::vector<float> labels;                 // rows x numbers of an action: as_stored(), the oracle's
+  std::vector<float> labels;                 // rows x numbers of an action: the oracle's, as_stored()
 };
 
-/// The value that more than half of the unaltered rows have in picture number `which`, number by number; any where
-/// there is none.
+/// Picture number `which` as most rows have it: for each of its numbers, the value of more than half of the unaltered
+/// rows, or any value where there is none.
 std::vector<float> usual_picture(const Samples& samples, std::size_t which);
 
 }  // namespace lgabench

@@ -12,7 +12,7 @@
 
 namespace lgabench {
 
-/// What is the same for all that is trained with LibTorch: Adam, one thread, weights that follow from the seed.
+/// What all learners in LibTorch share: Adam, one thread, and weights that follow from the seed.
 class TorchTrained : public Learner {
  public:
   void update(double learning_rate) override {
@@ -27,17 +27,17 @@ class TorchTrained : public Learner {
   }
 
  protected:
-  /// Call it before any module is made: initial weights are drawn from LibTorch's own generator.
+  /// Construct this before any module: LibTorch's own generator draws the initial weights.
   explicit TorchTrained(std::uint64_t seed) {
     torch::set_num_threads(1);  // a sum that is split among threads may differ in its last bit
     torch::manual_seed(seed);
   }
-  /// What update() moves, in the order of parameters().
+  /// Sets what update() moves, in the order of parameters().
   void train(std::vector<torch::Tensor> parameters) {
     trained_ = std::move(parameters);
     optimizer_ = std::make_unique<torch::optim::Adam>(trained_);
   }
-  /// Keeps the gradients of `loss`, one number, for update(). @returns the number.
+  /// Keeps the gradients of `loss`, a single number, for update(). @returns that number.
   double descend(const torch::Tensor& loss) {
     optimizer_->zero_grad();
     loss.backward();
@@ -60,15 +60,15 @@ inline torch::Tensor norm_loss(const torch::Tensor& actions, const torch::Tensor
   return (actions - labels).norm(2, 1).mean();
 }
 
-/// One number of actions and labels, both rows x numbers of an action.
+/// A loss: a single number from actions and labels, which are both rows x numbers of an action.
 using TorchLoss = std::function<torch::Tensor(const torch::Tensor& actions, const torch::Tensor& labels)>;
 
-/// Trains a module: its forward and loss are the method's, batches, seed and schedule lgabench's. `Module` is a holder,
-/// such as torch::nn::Sequential.
+/// Trains a module. The method gives its forward and loss; lgabench gives batches, seed and schedule. `Module` is a
+/// holder, such as torch::nn::Sequential.
 template <class Module>
 class TorchLearner : public TorchTrained {
  public:
-  /// Rows x numbers of an action.
+  /// Computes the actions, rows x numbers of an action.
   using Forward = std::function<torch::Tensor(Module& module, const TorchInputs& inputs)>;
 
   /// `make` is called once, with the seed set. `forward` and `loss` may not refer to the method, which may be gone when
@@ -102,7 +102,7 @@ class TorchLearner : public TorchTrained {
     return descend(loss_(forward_(module_, some), labels));
   }
 
-  /// Parameters and buffers, which lgabench restores into a module made with the same arguments.
+  /// Saves parameters and buffers, or restores them into a module made with the same arguments.
   bool learned(Archive& archive) override {
     const torch::NoGradGuard no_gradients;
     std::vector<torch::Tensor> all = module_->parameters();

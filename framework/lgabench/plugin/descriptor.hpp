@@ -5,13 +5,13 @@
 
 #include <lgabench/core/version.hpp>
 
-/// 16 characters; a macro so that the bytes stand in a plugin once, in its descriptor.
+/// 16 characters. They are a macro so that the bytes stand in a plugin once, in its descriptor.
 #define LGABENCH_PLUGIN_MAGIC "\x89lgabench plugin"
 
 namespace lgabench {
 
-/// Texts end with NUL. magic, struct_size and abi keep their places for ever, so that any two versions can say what
-/// differs; all else may change with abi.
+/// Texts end with NUL. The members magic, struct_size and abi never move, so that any two versions can say what
+/// differs. All other members may change with abi.
 struct PluginDescriptor {
   char magic[16];
   std::uint32_t struct_size, abi;
