@@ -23,7 +23,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
 double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
 
-/// Of the points seen from above (Andrew's monotone chain).
+/// The convex hull of the points seen from above (Andrew's monotone chain).
 Polygon convex_hull(const std::vector<Vec3>& points) {
   Polygon sorted, hull;
   for (const Vec3& p : points) sorted.push_back({p.x, p.y});
@@ -78,7 +78,7 @@ void for_each_gap(const Polygon& a, const Polygon& b, const Visit& visit) {
   }
 }
 
-/// Between two convex polygons; negative: how deep they overlap.
+/// The gap between two convex polygons; negative: how deep they overlap.
 double separation(const Polygon& a, const Polygon& b) {
   double most = -infinity;
   const auto keep = [&](Vec2, double gap) { most = std::max(most, gap); };
@@ -103,7 +103,7 @@ double way_out(const Polygon& a, const Polygon& b, Vec2 way) {
 
 bool beside(const Prism& a, const Prism& b) { return a.bottom < b.top - touch_m && b.bottom < a.top - touch_m; }
 
-/// Farther from one another than touch_m, seen from above, by their boxes: most pairs are, and need no further look.
+/// Whether two boxes, seen from above, are farther apart than touch_m: most pairs are, and need no further look.
 bool far_apart(const Prism& a, const Prism& b) {
   return a.low.x > b.high.x + touch_m || b.low.x > a.high.x + touch_m || a.low.y > b.high.y + touch_m ||
          b.low.y > a.high.y + touch_m;
@@ -189,7 +189,7 @@ class KinematicWorld final : public PhysicsWorld {
 
   Pose pose(int body) const override { return bodies_[index_of(body)].pose; }
 
-  // Their boxes alone.
+  // A body's box alone: it has neither mass nor friction.
   std::optional<BodyPhysics> physics(int body) const override {
     BodyPhysics box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
     for (const Prism& prism : bodies_[index_of(body)].prisms) {
@@ -201,7 +201,7 @@ class KinematicWorld final : public PhysicsWorld {
     return box;
   }
 
-  // Only of bodies that moved since reset(): the others rest.
+  // Contacts of bodies that moved since reset() alone: the others rest.
   std::vector<Contact> contacts() const override {
     std::vector<Contact> found;
     const auto touching = [](const std::vector<Prism>& a, const std::vector<Prism>& b) {
@@ -341,6 +341,6 @@ class KinematicWorld final : public PhysicsWorld {
 
 }  // namespace
 
-// LGABENCH_ENGINE in an engine whose bodies have mass and friction.
+// Use LGABENCH_ENGINE for an engine whose bodies have mass and friction.
 LGABENCH_KINEMATIC_ENGINE("kinematic", "0.1", "No dynamics: suction carries, a push moves aside, bodies lie flat",
                           KinematicWorld)

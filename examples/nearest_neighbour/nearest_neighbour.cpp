@@ -1,5 +1,5 @@
 // A method without training: the policy repeats the action of the demonstration whose goal mask is most similar.
-// Shows a Method and a Policy of your own, with the framework's goal mask; links lgabench::core alone, no LibTorch.
+// The example shows a Method and a Policy of your own, with the framework's goal mask. It links lgabench::core alone.
 #include <algorithm>
 #include <utility>
 
@@ -20,7 +20,7 @@ class NearestPolicy : public Policy {
  public:
   explicit NearestPolicy(std::vector<Example> examples) : examples_(std::move(examples)) {}
 
-  // A pure function: the same scene gives the same action, whatever was played before.
+  // act() is a pure function: the same scene gives the same action, whatever was played before.
   Action act(const Observation& observation, const Instruction& instruction) override {
     const std::vector<std::uint8_t> mask = goal_mask(observation, instruction.selection);
     const auto distance = [&mask](const Example& example) {
@@ -41,7 +41,7 @@ class NearestNeighbour : public Method {
   // The default: training targets are drawn from what select() returns, no noisy rollouts.
   Needs needs(const Json&) const override { return {}; }
 
-  // As in LGA: the language model's answers, and what they cost.
+  // As in LGA, the Selection has the language model's answers and what they cost.
   Selection select(const Command& command, const FeatureSpace& space, Services& services) override {
     return select_features(command, space, services.lm);
   }

@@ -1,5 +1,5 @@
-// A policy on pixels that learns from copies of each step, in which what was not selected is noise. Shows `copies`,
-// `augment` and repaint(); network, training and its number of steps are lgabench's.
+// A policy on pixels that learns from copies of each step, in which all that was not selected is noise. The example
+// shows copies(), augment() and repaint(). Network, training and its number of steps are lgabench's.
 #include <lgabench/abstraction/repaint.hpp>
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/learning/cloning_method.hpp>
@@ -11,7 +11,7 @@ class NoisyCopies : public CloningMethod {
  public:
   Needs needs(const Json&) const override {
     Needs needs;
-    needs.shadows = true;  // so that repaint() covers those of what it paints
+    needs.shadows = true;  // so that repaint() also covers the shadows of what it paints
     return needs;
   }
   Selection select(const Command& command, const FeatureSpace& space, Services& services) override {

@@ -11,7 +11,7 @@ from torch import nn
 
 from lgabench_method import Needs, Selection, goal_mask, select_features
 
-SHRINK = 2  # each block of so many rows and columns becomes its mean
+SHRINK = 2  # rows and columns of a block of pixels that becomes its mean
 
 
 class Bc:
@@ -56,7 +56,7 @@ def picture(observation, instruction):
 
 
 class Network(nn.Module):
-    """Three convolutions; of each map the expected row and column under its softmax; two linear layers."""
+    """Three convolutions, the expected row and column of each map under its softmax, and two linear layers."""
 
     def __init__(self, channels, numbers, maps=16):
         super().__init__()

@@ -28,7 +28,7 @@ class Forest:
 
 
 def moments(observation, instruction):
-    """Area, centre and (co)variances in pixels, of the target's mask and of the obstacle's: 12 numbers."""
+    """Area, centre and (co)variances, in pixels, of the target's mask and of the second set's: 12 numbers."""
     numbers = []
     for features in (instruction.selection.target, instruction.selection.second or FeatureSet()):
         rows, columns = numpy.nonzero(goal_mask(observation, Selection(target=features)))

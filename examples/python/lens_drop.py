@@ -1,4 +1,4 @@
-"""A perturbation axis (docs/extending.md): a drop on the lens hides what is behind it, from the policy and the segmenter."""
+"""A perturbation axis (docs/extending.md): a drop on the lens hides what is behind it, from policy and segmentation alike."""
 from dataclasses import replace
 
 import numpy

@@ -10,7 +10,7 @@ from torch import nn
 
 from lgabench_method import goal_mask, select_features
 
-ROWS, COLUMNS = 36, 72  # of what the network sees
+ROWS, COLUMNS = 36, 72  # of the mask that the network sees
 
 
 class Lga:
@@ -39,7 +39,7 @@ class Lga:
 
 
 def small_mask(observation, instruction):
-    """1 x 36 x 72 of 0 and 1: 1 where any pixel of the goal mask that the small one touches is 1."""
+    """The goal mask as 1 x 36 x 72 of 0 and 1: a small pixel is 1 where any pixel that it touches is 1."""
     mask = goal_mask(observation, instruction.selection)
     for axis, small in ((0, ROWS), (1, COLUMNS)):
         native = mask.shape[axis]
@@ -76,7 +76,7 @@ class Policy:
     def __init__(self, network, masks):
         self.network = network
         self.learned_from = {mask.tobytes() for mask in masks}
-        self.seen_in_training = None  # of the last input
+        self.seen_in_training = None  # whether the last input was one of these
 
     @torch.no_grad()
     def act(self, observation, instruction):

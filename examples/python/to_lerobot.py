@@ -4,7 +4,7 @@
     python to_lerobot.py heart.hdf5 heart_lerobot
 
 A frame holds the picture, an action scaled to [-1, 1] as the Gymnasium environment takes it, and the command as its task. LeRobot
-expects a state, of two numbers at least; a scene has none that a policy sees, so it is 0. environments() makes what lerobot's
+expects a state of at least two numbers. A policy sees no state of a scene, so the state is 0. environments() makes what lerobot's
 rollout() plays.
 """
 import functools
@@ -56,7 +56,7 @@ class ForLeRobot(gymnasium.ObservationWrapper):
 
 
 def environments(id, count, **settings):
-    """Of lerobot's rollout(), which counts a success only where an episode's end and the next one's begin are one step."""
+    """Makes environments for lerobot's rollout(), which counts a success only if one step ends an episode and begins the next."""
     return gymnasium.vector.SyncVectorEnv([functools.partial(ForLeRobot, id, **settings)] * count,
                                           autoreset_mode=gymnasium.vector.AutoresetMode.SAME_STEP)
 

@@ -2,10 +2,11 @@
 
     lgabench demos heart --layout cells --n 50 --out heart.hdf5
     python to_robomimic.py heart.hdf5 trained            # from the picture
-    python to_robomimic.py heart.hdf5 trained masked     # the same, all painted out but what the command means
+    python to_robomimic.py heart.hdf5 trained masked     # the same, with all painted out but what the command means
 
-robomimic reads the file as it is, but for two things: its network ends in tanh, so a copy has actions scaled to [-1, 1]; and there the
-pictures are half as high and wide, for a processor's sake. An episode is one action, hence sequences of 1.
+robomimic could read the file as it is. This script trains on a copy, whose actions are scaled to [-1, 1], since robomimic's
+network ends in tanh, and whose pictures are half as high and wide, to train on a CPU. An episode is one action, hence sequences
+of 1.
 """
 import pathlib
 import shutil
@@ -25,7 +26,7 @@ TABLE = 196, 194, 190
 
 
 def shown(observation, selection):
-    """What the network sees; with a Selection, of what it keeps alone."""
+    """The picture that the network sees; with a Selection, only what it keeps."""
     rgb = observation.rgb.copy()
     if selection is not None:
         rgb[goal_mask(observation, selection) == 0] = TABLE
@@ -37,7 +38,7 @@ def true_selections(scenario):
 
 
 def prepare(demonstrations, file, to, selections):
-    """A copy whose actions are within [-1, 1], and whose pictures are those that the network sees."""
+    """Writes a copy whose actions are within [-1, 1], and whose pictures are those that the network sees."""
     shutil.copyfile(file, to)
     with h5py.File(to, "r+") as copy:
         for number, one in enumerate(demonstrations):
@@ -71,7 +72,7 @@ def clone(file, folder, epochs=200):
 
 
 def play(checkpoint, demonstrations, selections, episodes=100):
-    """Success on test scenes of the demonstrations' scenario."""
+    """Measures success on test scenes of the demonstrations' scenario."""
     policy, _ = file_utils.policy_from_checkpoint(ckpt_path=checkpoint)
 
     def act(observation, utterance):
