@@ -13,10 +13,10 @@ A method is a class in a file; `lgabench run q1 --methods my_method.py:MyMethod`
         def learn(self, demonstrations, services): ...
             # an object with act(observation, instruction), and maybe reset() and shown(), a Shown
 
-A perturbation axis is a class too, with `levels` and perceive(seen, level, stream), and so is what reads names from pictures, with
-read(seen, space) (docs/extending.md).
+A perturbation axis is a class with `levels` and perceive(seen, level, stream). A perceiver, which reads names from pictures, is a
+class with read(seen, space) (docs/extending.md).
 
-Needs NumPy alone. One thread; the same seed must give the same bytes.
+This package needs NumPy alone. lgabench calls a class from one thread; the same seed must give the same bytes.
 """
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class SecondRole:
 
 @dataclass(frozen=True)
 class Command:
-    """What a method is told of the task: the words, the task's id, and what they speak of beside the target, if anything."""
+    """What a method is told of the task: the words, the task's id, and the second set that the words speak of, if any."""
     utterance: str
     task: str
     second: Optional[SecondRole] = None
@@ -76,7 +76,7 @@ class FeatureSet:
     textures: list[str] = field(default_factory=list)
 
     def contains(self, object_type: str, texture: str) -> bool:
-        """Both are among its features."""
+        """Whether both are among its features."""
         return object_type in self.object_types and texture in self.textures
 
 
@@ -88,7 +88,7 @@ class SecondSet(FeatureSet):
 
 @dataclass
 class Which:
-    """Which one is meant of several visible objects that belong to a meaning.
+    """Which one of several visible objects that belong to a meaning is meant.
 
     `rule` is left_of, right_of, nearest_to, farthest_from (with `of`, the reference), leftmost, rightmost, or first_in (with
     `order`: object types, or textures).
@@ -100,12 +100,12 @@ class Which:
 
 @dataclass
 class Meaning:
-    """A union of products of object types and textures and, where the words say so, which of several that belong."""
+    """A union of products of object types and textures and, where the words say so, which of several objects is meant."""
     sets: list[FeatureSet]
     which: Optional[Which] = None
 
     def belongs(self, object_type: str, texture: str) -> bool:
-        """The object is in any of the sets."""
+        """Whether the object is in any of the sets."""
         return any(one.contains(object_type, texture) for one in self.sets)
 
 
@@ -121,8 +121,8 @@ class Hypothesis:
 class Selection:
     """Which features matter (paper, section 3.1). `second` describes the task's second set; None where it has none.
 
-    `meaning` is all that the target is; `target` is its one product, and raises where there is more to it. `provenance`,
-    `source` and `asked_as` are lgabench's, by what was asked; what a method writes there is not read.
+    `meaning` describes the whole target. `target` is its one product, and raises ValueError where there is more to it. lgabench
+    fills in `provenance`, `source` and `asked_as` by what was asked, and ignores what a method writes there.
     """
     meaning: Meaning
     second: Optional[SecondSet]
@@ -149,7 +149,7 @@ class Selection:
         self.meaning = Meaning([product])
 
     def belongs(self, object_type: str, texture: str) -> bool:
-        """The object's features are among those that target or second set name; grounded() says which one is meant."""
+        """Whether target or second set names the object's features; grounded() says which object is meant."""
         return (self.meaning.belongs(object_type, texture)
                 or (self.second is not None and self.second.contains(object_type, texture)))
 
@@ -172,10 +172,10 @@ class Instance:
 
 @dataclass(frozen=True)
 class Observation:
-    """The camera's picture: `rgb` is rows x columns x 3, `ids` rows x columns, both uint8; 0 in `ids` is no object.
+    """The camera's picture. `rgb` is rows x columns x 3, `ids` rows x columns, both uint8; 0 in `ids` is no object.
 
-    `shadows`, where Needs asked for it, is rows x columns, uint16: bit k says that the object of instances[k] keeps light
-    from what the pixel shows. repaint() takes a shadow away by it.
+    `shadows` is rows x columns, uint16, or None unless Needs asked for it. Bit k says that the object of instances[k] keeps
+    light from what the pixel shows. repaint() takes shadows away by it.
     """
     rgb: Bytes
     ids: Bytes
@@ -185,7 +185,7 @@ class Observation:
 
 @dataclass(frozen=True)
 class Step:
-    """An observation with the oracle's action for it: a double for each of layout["action"]["numbers"]."""
+    """An observation with the oracle's action for it, a double for each of layout["action"]["numbers"]."""
     observation: Observation
     label: Numbers
 
@@ -208,10 +208,10 @@ class Needs:
 
 @dataclass
 class Shown:
-    """What the policy's last act() read of the scene, for a report's page: no result depends on it.
+    """What the policy's last act() read of the scene, for a report's page. No result depends on it.
 
-    `pictures` are (name, array) or (name, array, how it is read). An array of rows x columns is a mask: above 0 is white,
-    below red, 0 black. One of rows x columns x 3 has colours: bytes, or numbers from 0 to 1.
+    `pictures` are (name, array) or (name, array, how it is read). An array of rows x columns is a mask: a number above 0
+    is white, one below 0 red, and 0 black. An array of rows x columns x 3 has colours: bytes, or numbers from 0 to 1.
     """
     pictures: Sequence[Picture] = field(default_factory=list)
     texts: Sequence[str] = field(default_factory=list)   # read beside them, in words for a caption
@@ -219,50 +219,50 @@ class Shown:
 
 
 class LanguageModel(Protocol):
-    """Whoever answers which features matter: recorded answers, or a server's. lgabench counts what is asked."""
+    """Answers which features matter, by recorded answers or a server's. lgabench counts the questions."""
 
     def answer(self, command: Command, space: FeatureSpace, questions: Sequence[Question]) -> list[bool]:
-        """In order of the questions. Raises Refused."""
+        """Returns True for yes, in the order of the questions. Raises Refused."""
 
     def mean(self, command: Command, space: FeatureSpace) -> Meaning:
         """What the command means, in one answer; empty where the model gave no meaning that can be read. Raises Refused."""
 
 
     def hypotheses(self, command: Command, space: FeatureSpace) -> list[Hypothesis]:
-        """Which unstated preferences could explain that a person takes only some of the objects that the words mean; empty where
-        nobody answered that. Raises Refused."""
+        """The unstated preferences that could explain why a person takes only some of the objects that the words mean; empty
+        where there is no answer. Raises Refused."""
 
 
 class HumanAnswers(Protocol):
     """A person's answers, for methods that declare that they ask people; for others every call raises Refused."""
 
     def specify(self, command: Command) -> Selection:
-        """Which features the person says that the command means."""
+        """The Selection that the person makes for the command."""
 
     def edit(self, command: Command, proposal: Selection) -> Selection:
-        """What the person makes of a proposal."""
+        """The proposal as the person leaves it."""
 
     def accepts(self, command: Command, object_type: str, texture: str) -> bool:
         """Whether the person, shown one object, would take it for that command."""
 
     def scene(self, command: Command, scene: int) -> list[dict[str, Any]]:
-        """What stands in a scene that the person may be asked about, free of charge: the command's demonstrated ones, from 0, then
-        some that nobody demonstrated. Objects have id, object_type, texture, pixels, and row and column of their middle."""
+        """The objects of a scene that the person may be asked about, free of charge. Scenes count from 0: the command's demonstrated
+        ones, then some that nobody demonstrated. An object has id, object_type, texture, pixels, and row and column of its middle."""
 
     def takes(self, command: Command, scene: int, instance: int) -> bool:
-        """Whether the person would take that object there. It counts one of the option `questions`, which() three; more raise
-        Refused."""
+        """Whether the person would take that object in that scene. A call counts as one of the option `questions`, which() as three.
+        Raises Refused when these are used up."""
 
     def which(self, command: Command, scene: int) -> Optional[int]:
-        """Id of the one that the person would take there, or None."""
+        """Id of the object that the person would take in that scene, or None."""
 
 
 class TrainingLog(Protocol):
     """Where a method reports its training, while learn() runs."""
 
     def epoch(self, epochs: int, steps: int, loss: float, **curves: float) -> None:
-        """After each pass over the data: passes so far, optimiser steps so far, mean loss of the pass, and other values of it
-        by name, as validation=0.2: a report draws a curve of each."""
+        """Call it after each pass over the data, with the passes and optimiser steps so far, the pass's mean loss, and other
+        values of the pass by name, such as validation=0.2. A report draws a curve of each."""
 
 
 @dataclass
@@ -270,7 +270,7 @@ class Services:
     """What lgabench lends to a method for the length of a call."""
     lm: LanguageModel
     human: HumanAnswers
-    options: dict[str, Any]  # every one
+    options: dict[str, Any]  # all, defaults filled in
     seed: int                # governs all that is random
     log: TrainingLog
     files: str               # a directory for pictures and curves of the method's own; kept with the cell
@@ -279,16 +279,16 @@ class Services:
 
 
 class Policy(Protocol):
-    """What was learned. It may also have reset(), called before each episode, and shown() -> Shown; and an attribute
-    seen_in_training, whether the last act() read, to the byte, an input that was learned from. `run --keep-policy` pickles it."""
+    """What was learned. A policy may also have reset(), called before each episode; shown() -> Shown; and an attribute
+    seen_in_training, whether the last act() read, to the byte, an input of training. `run --keep-policy` pickles the policy."""
 
     def act(self, observation: Observation, instruction: Instruction) -> numpy.typing.ArrayLike:
-        """The one action of an episode: a number for each of layout["action"]["numbers"]."""
+        """Returns the one action of an episode: a number for each of layout["action"]["numbers"]."""
 
 
 class Method(Protocol):
-    """What is called of a method's class, in this order; needs(options) -> Needs and revise(command, selected,
-    demonstrations, services) -> Selection may be there as well."""
+    """The functions of a method's class that lgabench calls, in this order. The class may also have needs(options) -> Needs, called
+    first, and revise(command, selected, demonstrations, services) -> Selection, called before learn()."""
     version: str
     summary: str
     options: dict[str, dict[str, Any]]
@@ -297,34 +297,36 @@ class Method(Protocol):
         """Which features could the command mean (paper, section 3.1)? Called for each command of the scenario."""
 
     def learn(self, demonstrations: list[Demonstration], services: Services) -> Policy:
-        """Learns from the demonstrations, the cell's number of them for each seen command."""
+        """Returns a policy learned from the demonstrations, the cell's number of them for each seen command."""
 
 
 class Perturbation(Protocol):
-    """What is called of a perturbation axis' class. `levels` says what each is, level 1 first; `changes` which of "rgb", "ids" and
-    "instances" differ in nearly every episode; `may_change`, which may be left out, in some; `named = True`: levels without an order."""
+    """The class of a perturbation axis. `levels` says what each level is, level 1 first. `changes` lists which of "rgb", "ids" and
+    "instances" differ in nearly every episode; `may_change`, if there are any, those that differ in some. With `named = True`,
+    levels have no order."""
     version: str
     summary: str
     levels: list[str]
     changes: list[str]
 
     def perceive(self, seen: Observation, level: int, stream: RandomStream) -> Observation:
-        """What is perceived at that level, 1 or more, in place of `seen`: arrays of the same shapes, ids of listed instances alone.
+        """Returns what is perceived at that level, 1 or more, in place of `seen`: arrays of the same shapes, ids of listed instances
+        alone.
 
-        `stream` is the scene's and the same at every level: it gives the direction of a change, and the level gives its size. The
-        same arguments give the same bytes. The arrays are yours to change; pixels of instances are counted by lgabench.
+        `stream` is the scene's and the same at every level: draw the direction of a change from it, and let the level give the
+        size. The same arguments must give the same bytes. You may change the arrays of `seen`; lgabench counts instances' pixels.
         """
 
 
 class Perceiver(Protocol):
-    """What is called of a class that reads names from pictures (--names)."""
+    """The class of a perceiver, which reads names from pictures (--names)."""
     version: str
     summary: str
 
     def read(self, seen: Observation, space: FeatureSpace) -> Observation:
-        """`seen`, which has no instances, with those whose types and textures it reads: names of the space, ids that `ids` has.
+        """Returns `seen`, which has no instances, with those that the class reads: names of the space, for ids that `ids` has.
 
-        `ids` are the segments that the run gives, and may be changed; colours are not looked at again. The same picture has the same
+        `ids` are the run's segments, and may be changed; lgabench ignores changed colours. The same picture must get the same
         names, whatever was asked before.
         """
 
@@ -343,7 +345,7 @@ def select_features(command: Command, space: FeatureSpace, lm: LanguageModel) ->
 
 
 def select_meaning(command: Command, space: FeatureSpace, lm: LanguageModel) -> Selection:
-    """Asks what the command means, in one question; of the task's second set, where it has one, as select_features()."""
+    """Asks what the command means, in one question, and for the task's second set, where it has one, as select_features() does."""
     second = select_features(command, space, lm).second if command.second else None
     return Selection(second=second, meaning=lm.mean(command, space))
 
@@ -382,7 +384,7 @@ def grounded(meaning: Meaning, observation: Observation) -> list[int]:
 
 
 def goal_mask(observation: Observation, selection: Selection) -> Bytes:
-    """rows x columns of 0 and 1: 1 on every object that is meant, as target or second set (paper, section 3.1)."""
+    """The goal mask, rows x columns of 0 and 1: 1 on every object that is meant as target or second set (paper, section 3.1)."""
     kept = grounded(selection.meaning, observation)
     if selection.second is not None:
         kept += [one.id for one in observation.instances if selection.second.contains(one.object_type, one.texture)]
@@ -392,7 +394,7 @@ def goal_mask(observation: Observation, selection: Selection) -> Bytes:
 def taken(demonstration: Demonstration, layout: dict[str, Any]) -> Optional[int]:
     """Id of the instance that the demonstrated action takes, or pushes, as lgabench::taken() of core/method.hpp finds it.
 
-    `layout` is that of the services. None where nothing that can be taken is in view.
+    `layout` is Services.layout. None where nothing that can be taken is in view.
     """
     step = demonstration.steps[0]
     numbers, places = layout["action"]["numbers"], layout["action"]["places"]

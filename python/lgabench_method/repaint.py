@@ -1,7 +1,7 @@
-"""Repainting: what is taken out of a picture, or made to look otherwise, beside what a goal mask keeps.
+"""Repainting takes objects out of a picture, or makes them look otherwise, beside what a goal mask keeps.
 
-The same bytes as lgabench::repaint() of abstraction/repaint.hpp for the same streams. Colours change, ids and instances
-stay. `Needs(shadows=True)` asks for what shadows are taken away by.
+For the same streams it gives the same bytes as lgabench::repaint() of abstraction/repaint.hpp. Colours change, ids and instances
+stay. To take shadows away, a method must ask for them: `Needs(shadows=True)`.
 """
 from __future__ import annotations
 
@@ -77,8 +77,8 @@ def _most_frequent(colours: numpy.typing.NDArray[numpy.int64]) -> int:
 
 
 def usual_background(demonstrations: Iterable[Demonstration]) -> Background:
-    """What more than half of the steps show at a pixel, of those in which neither an object nor a shadow is there; where
-    that is never so, the most frequent of the colours found."""
+    """The background of these demonstrations. Its colour at a pixel is that of more than half of the steps in which neither an
+    object nor a shadow is there; where there is no such step, the most frequent colour of the other pixels."""
     seen = [step.observation for one in demonstrations for step in one.steps]
     candidates = numpy.zeros(seen[0].ids.shape, numpy.int64)
     lead, known = numpy.zeros_like(candidates), numpy.zeros(candidates.shape, bool)
@@ -91,7 +91,7 @@ def usual_background(demonstrations: Iterable[Demonstration]) -> Background:
 
 
 def most_frequent_colour(background: Background) -> Colour:
-    """The table's, where the picture shows little else."""
+    """The background's most frequent colour: the table's, if the picture shows little else."""
     return Colour(*_unpacked(_most_frequent(_packed(background.rgb))).tolist())
 
 
@@ -116,11 +116,10 @@ def _pattern(stream: RandomStream, rows: Numbers, columns: Numbers) -> Bytes:
 
 
 def repaint(observation: Observation, which: Sequence[int], how: How) -> Observation:
-    """Paints the pixels whose ids are `which`; 0: of all that is no object.
+    """Paints the pixels whose ids are in `which`; the id 0 stands for all that is no object.
 
-    A background or a colour takes their shadows away too, where the observation tells shadows and nothing else throws one
-    there, so that a second time changes nothing; noise covers what is no object in their shadows; under textures shadows
-    stay.
+    A background or a colour takes their shadows away too, if the observation tells shadows, except where another object
+    throws one. Noise also covers the pixels in their shadows that show no object. Under textures, shadows stay.
     """
     covered: Mask = numpy.isin(observation.ids, list(which))
     rgb = observation.rgb.copy()
@@ -149,9 +148,9 @@ Augment = Callable[[Step, Selection, int, RandomStream], Step]
 
 
 def augmented(demonstrations: Sequence[Demonstration], copies: int, augment: Augment, seed: int) -> list[Demonstration]:
-    """The demonstrations, and behind them, copy by copy, what augment(step, selection, copy, stream) makes of their steps.
+    """The demonstrations and, behind them, copy by copy, what augment(step, selection, copy, stream) makes of their steps.
 
-    Train for as many optimiser steps as on the demonstrations alone, or say so: else a row with copies learns longer.
+    Train for as many optimiser steps as on the demonstrations alone, or say that you do not: a row with copies learns longer.
     """
     everything = list(demonstrations)
     for copy in range(copies):

@@ -25,7 +25,7 @@ def _hash64(name: str) -> int:
 class RandomStream:
     """Philox4x32-10 (Salmon et al., SC 2011). A stream is named: two with different names never share numbers.
 
-    With `size` (a number or a shape) functions return an array of what as many calls in a row would have returned.
+    With `size` (a number or a shape) a function returns the array that as many calls in a row would have returned.
     """
 
     def __init__(self, name: str) -> None:

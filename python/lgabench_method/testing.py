@@ -1,4 +1,4 @@
-"""What a method is given, without a run: for unit tests and notebooks. Needs the package lgabench.
+"""What a method is given, without a run: for unit tests and notebooks. This module needs the package lgabench.
 
     from lgabench_method import testing
 
@@ -6,7 +6,8 @@
     policy = MyMethod().learn(testing.demonstrations("heart", 5), services)
     print(testing.try_out(MyMethod, "heart"))
 
-The language model answers with the truth, training targets are drawn from it, nothing is confined: no row of the table.
+The language model answers with the truth, training targets are drawn from the truth, and no process is confined: what this module
+measures is no row of a table.
 """
 from __future__ import annotations
 
@@ -114,7 +115,7 @@ def observations(scenario: Scenario = "heart", count: int = 5, *, engine: str = 
 
 
 def services(kind: Callable[[], Method], scenario: Scenario = "heart", *, seed: int = 0, **options: Any) -> Services:
-    """With the options' defaults, and `options` in place of some. `files` is a new directory below the temporary one."""
+    """Services with the options' defaults, and `options` in place of some. `files` is a new directory below the temporary one."""
     declared: dict[str, dict[str, Any]] = getattr(kind, "options", {})
     if unknown := set(options) - set(declared):
         raise ValueError(f"options: no {', '.join(sorted(unknown))} among {', '.join(declared) or 'none'}")

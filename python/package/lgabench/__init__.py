@@ -1,4 +1,4 @@
-"""lgabench in Python: scenes to step, as Gymnasium environments too, demonstrations and runs to read (docs/python.md).
+"""lgabench in Python: scenes to step, Gymnasium environments, demonstrations and runs to read (docs/python.md).
 
     env = lgabench.Environment("heart")
     seen = env.reset("test", 0)

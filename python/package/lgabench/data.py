@@ -30,9 +30,9 @@ Path = Union[str, os.PathLike[str]]
 class Run:
     """A run directory. Frames have the index `cell`, a cell's key; columns beside those of docs/formats are kept too."""
     run: dict[str, Any]  # run.json
-    cells: pandas.DataFrame  # a row a finished cell: its setting, and the quality of what was selected
-    episodes: pandas.DataFrame  # as episodes.csv, and `action`
-    training: pandas.DataFrame  # a row an epoch
+    cells: pandas.DataFrame  # a row per finished cell: its setting, and the quality of its Selections
+    episodes: pandas.DataFrame  # the columns of episodes.csv, and `action`
+    training: pandas.DataFrame  # a row per epoch
     timing: pandas.DataFrame
     failed: dict[str, str] = field(default_factory=dict)  # cell -> why it has no result
 

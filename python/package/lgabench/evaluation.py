@@ -1,4 +1,4 @@
-"""Success of an actor of one's own on the test scenes of a run."""
+"""Measures the success of your own actor on the test scenes of a run."""
 from __future__ import annotations
 
 import collections
@@ -14,7 +14,7 @@ from lgabench_method import Observation
 
 @dataclass(frozen=True)
 class Result:
-    """Made outside the harness: not a row of the table, which confines methods and records what they did."""
+    """Success of an actor outside of a run. It is no row of a table: a run confines methods and records what they did."""
     success: float
     low: float  # Wilson's 95 % interval
     high: float
@@ -23,7 +23,7 @@ class Result:
 
 
 def wilson(successes: int, episodes: int) -> tuple[float, float]:
-    """95 % interval of a rate."""
+    """Wilson's 95 % interval of a rate."""
     z = 1.959963984540054
     share, half = successes / episodes, z * z / (2 * episodes)
     spread = z * math.sqrt(share * (1 - share) / episodes + z * z / (4 * episodes**2))

@@ -15,7 +15,7 @@ from lgabench.scenes import INDICES, Batch, Environment, Pool, Scenario, SPLITS
 
 __all__ = ["SceneEnv", "SceneVectorEnv", "dense_reward"]
 
-HALF_AT = {"m": .1, "deg": 15., "px": 50.}  # how far a part of success is from right that halves a dense reward
+HALF_AT = {"m": .1, "deg": 15., "px": 50.}  # the distance from right, of one part of success, that halves a dense reward
 PRINTABLE = "".join(map(chr, range(32, 127)))
 Path = Union[str, os.PathLike[str]]
 

@@ -25,7 +25,7 @@ class Policy:
 
     def __init__(self, process: subprocess.Popen[bytes], instructions: dict[str, Selection], scenario: str) -> None:
         self.scenario = scenario
-        self.selections = instructions  # utterance -> what was selected for it
+        self.selections = instructions  # utterance -> its Selection
         self._process: Optional[subprocess.Popen[bytes]] = process
         self._size: tuple[int, int] = (0, 0)
 
