@@ -28,7 +28,7 @@ Path = Union[str, os.PathLike[str]]
 
 @dataclass(frozen=True)
 class Run:
-    """A run directory. Frames have the index `cell`, a cell's key; columns beside those of docs/formats are kept too."""
+    """A run's results. Each frame has the index `cell`, a cell's key, and keeps columns that docs/formats does not list."""
     run: dict[str, Any]  # run.json
     cells: pandas.DataFrame  # a row per finished cell: its setting, and the quality of its Selections
     episodes: pandas.DataFrame  # the columns of episodes.csv, and `action`
@@ -50,8 +50,8 @@ def _lines(data: bytes) -> Iterator[dict[str, Any]]:
 
 
 def load_run(directory: Path, verify: bool = True) -> Run:
-    """Reads what a run left. `verify`: each file's SHA-256 is compared with the cell's status.json. ValueError says which
-    file is not as it was written, OSError which cannot be read; a symbolic link is refused."""
+    """Reads a run's directory. With `verify`, each file's SHA-256 is compared with the cell's status.json. ValueError names a
+    file that is not as it was written, OSError one that cannot be read. A symbolic link is refused."""
     import pandas
 
     root = pathlib.Path(directory)
@@ -105,7 +105,7 @@ def _setting(key: str, cell: Mapping[str, Any]) -> dict[str, Any]:
 
 
 class Demonstrations(list[Demonstration]):
-    """A list of demonstrations, and what the file says of where they come from: "" or None in files before 0.3."""
+    """A list of demonstrations, and where they come from as the file says: "" or None in files of versions before 0.3."""
     scenario: str = ""
     layout: str = ""
     split: str = ""
@@ -114,8 +114,8 @@ class Demonstrations(list[Demonstration]):
 
 
 def load_demonstrations(file: Path) -> Demonstrations:
-    """Reads what `lgabench demos` wrote, also with recovery steps. Instructions hold the true Selection, or that of
-    `demos --selection`; in files of versions before 0.4 they hold none."""
+    """Reads a file of `lgabench demos`, recovery steps included. Instructions hold the true Selection, or that of
+    `demos --selection`; in files of versions before 0.4 they hold no Selection."""
     import h5py
 
     all_of_them = Demonstrations()
@@ -141,7 +141,7 @@ def load_demonstrations(file: Path) -> Demonstrations:
 
 
 def goal_mask(observation: Observation, selection: Selection) -> lgabench_method.Bytes:
-    """The mask of the paper (section 3.1), rows x columns of 0 and 1. Warns of an empty Selection, of which nothing is visible."""
+    """The goal mask (paper, section 3.1), rows x columns of 0 and 1. Warns of an empty Selection, whose mask is all 0."""
     if selection.second is None and not any(one.object_types and one.textures for one in selection.meaning.sets):
         warnings.warn("goal_mask: the Selection is empty, so that the mask is 0 everywhere", stacklevel=2)
     return lgabench_method.goal_mask(observation, selection)

@@ -44,8 +44,8 @@ def _whole(suite: str) -> str:
 
 
 def questions(suite: str, form: str = "flat") -> list[dict[str, str]]:
-    """What is asked about the suite's commands, each question once: `id`, `system` and `user`, the messages for the model, and
-    `suite`, `form`, `command`, `about` for a reader. ValueError for no suite or no form."""
+    """The questions about the suite's commands, each once, with `id`; `system` and `user`, the messages for the model; and
+    `suite`, `form`, `command` and `about` for a reader. ValueError for an unknown suite or form."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder, "questions.jsonl")
         _call("answers", _whole(suite), "--form", form, "--questions", file)
@@ -79,7 +79,7 @@ def score_or_nan(replies: Iterable[Reply]) -> dict[str, float]:
 # lm-evaluation-harness: a task is a file, which names these functions.
 
 def process_results(doc: Mapping[str, str], results: Sequence[str]) -> dict[str, tuple[str, ...]]:
-    """Of one question: what every metric's aggregation needs of its reply."""
+    """What every metric's aggregation needs of the reply to one question."""
     return dict.fromkeys(METRICS, (doc["suite"], doc["form"], doc["id"], results[0] or ""))
 
 

@@ -21,9 +21,9 @@ Path = Union[str, os.PathLike[str]]
 
 
 def dense_reward(success: bool, distance: Mapping[str, float]) -> float:
-    """1 for a success. Else .9 times the product of 1 / (1 + d / h) over the parts of `distance` (scenes.StepResult), h being
-    .1 m, 15 degrees, 50 pixels, or 1: within [0, .9], and the less the further any part is from right. The form is lgabench's
-    own, and no run uses it."""
+    """The dense reward: 1 for a success, else within [0, 0.9] and the less the further any part is from right. It is 0.9
+    times the product of 1 / (1 + d / h) over the parts d of `distance` (scenes.StepResult), where h is 0.1 m, 15 degrees, 50
+    pixels, or 1 for a part without a unit. The form is lgabench's own, and no run uses it."""
     reward = .9
     for part, value in distance.items():
         reward /= 1 + value / HALF_AT.get(part.rpartition("_")[2], 1.)
@@ -31,7 +31,7 @@ def dense_reward(success: bool, distance: Mapping[str, float]) -> float:
 
 
 class _Reward:
-    """What a step is worth: `sparse`, 1 for a success and else 0, or `dense`."""
+    """A step's reward: `sparse`, 1 for a success and else 0, or `dense`, dense_reward()."""
 
     def __init__(self, mode: str) -> None:
         if mode not in ("sparse", "dense"):
@@ -53,7 +53,7 @@ def observation_space(scenario: Scenario) -> spaces.Dict:
 
 
 class _Choice:
-    """Which scene a reset begins: options decide; else split train draws one, dev and test play scene `seed` or the next."""
+    """Which scene a reset begins: that of its options, else split train draws one, and dev and test play `seed` or the next."""
 
     def __init__(self, scenario: Scenario, split: str, arm: Optional[str], scene_seed: int) -> None:
         if split not in SPLITS:
@@ -81,7 +81,7 @@ class _Choice:
 
 
 class SceneEnv(gymnasium.Env[dict[str, Any], numpy.typing.NDArray[numpy.float32]]):
-    """One scenario, by id or by a file of one's own (`path`). Actions within [-1, 1]; `to_metres` says what they are."""
+    """One scenario, by its id or a file of your own (`path`). Actions are within [-1, 1]; `to_metres` says what they mean."""
     metadata = {"render_modes": ["rgb_array"], "render_fps": 1}
 
     def __init__(self, scenario: Union[str, Scenario, None] = None, *, path: Optional[Path] = None, split: str = "train",
@@ -122,7 +122,7 @@ class SceneEnv(gymnasium.Env[dict[str, Any], numpy.typing.NDArray[numpy.float32]
                 {"is_success": result.success, "failure": result.failure, "distance": result.distance})
 
     def expert_action(self) -> numpy.typing.NDArray[numpy.float32]:
-        """The oracle's, within [-1, 1]."""
+        """The oracle's action, within [-1, 1]."""
         return self.from_metres(self.environment.expert_action())
 
     def render(self) -> Any:
@@ -141,7 +141,7 @@ class SceneEnv(gymnasium.Env[dict[str, Any], numpy.typing.NDArray[numpy.float32]
 
 class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
     """`num_envs` of a scenario on C++ threads: gymnasium.make_vec("lgabench/heart-v1", 8, threads=2). Environment i equals a
-    SceneEnv with seed + i. Episodes are one action, so each step() ends all: SAME_STEP begins the next ones at once."""
+    SceneEnv with seed + i. An episode is one action, so each step() ends all: SAME_STEP begins the next episodes at once."""
     metadata = {"render_modes": ["rgb_array"], "render_fps": 1, "autoreset_mode": AutoresetMode.SAME_STEP}
 
     def __init__(self, scenario: Union[str, Scenario, None] = None, num_envs: int = 1, *, path: Optional[Path] = None,
@@ -209,7 +209,7 @@ class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
                 numpy.zeros(self.num_envs, bool), infos)
 
     def expert_actions(self) -> numpy.typing.NDArray[numpy.float32]:
-        """The oracle's, a row for each environment."""
+        """The oracle's actions, a row for each environment."""
         return self.from_metres(self.pool.expert_actions())
 
     def render(self) -> Any:

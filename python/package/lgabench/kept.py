@@ -20,8 +20,8 @@ PROGRAM = pathlib.Path(__file__).with_name("_install") / "bin" / "lgabench-worke
 
 
 class Policy:
-    """What a cell learned. It acts in a confined process of its own, where its file is opened too. One thread; close() or
-    `with` ends the process. RuntimeError where that ended by itself."""
+    """What a cell learned. The policy acts in a confined process of its own, which also opens its file. One thread. close() or
+    `with` ends the process; if it ended by itself, a call raises RuntimeError."""
 
     def __init__(self, process: subprocess.Popen[bytes], instructions: dict[str, Selection], scenario: str) -> None:
         self.scenario = scenario
@@ -31,7 +31,7 @@ class Policy:
 
     def act(self, observation: Observation, utterance: Optional[str] = None,
             selection: Optional[Selection] = None) -> numpy.typing.NDArray[numpy.float64]:
-        """The action for a command of the cell (its first if None), with what was selected for it, or another Selection."""
+        """The action for a command of the cell (the first if None), with its Selection or with `selection`."""
         utterance = next(iter(self.selections)) if utterance is None else utterance
         chosen = self.selections.get(utterance) if selection is None else selection
         if chosen is None:
@@ -78,8 +78,8 @@ class Policy:
 
 
 def load_policy(cell: Path, method: str = "", *, plugin_path: Sequence[Path] = (), python: str = sys.executable) -> Policy:
-    """The policy that is kept in a cell's directory, RUN/cells/KEY. `method`: FILE.py:Class, of a method in Python, which
-    `python` runs. RuntimeError in one line, with the file's name, where there is none, or it is damaged."""
+    """The policy that is kept in a cell's directory, RUN/cells/KEY. `method` is FILE.py:Class of a method in Python, which
+    `python` runs. RuntimeError with the file's name, in one line, if the file is missing or damaged."""
     folder = pathlib.Path(cell)
     recorded = json.loads((folder / "cell.json").read_text())
     commands = json.loads((folder / "selection.json").read_text())["commands"]

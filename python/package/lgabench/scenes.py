@@ -1,4 +1,4 @@
-"""Scenarios and their scenes, stepped as a run steps them; numpy alone."""
+"""Scenarios and their scenes, stepped as a run steps them. This module needs NumPy alone."""
 from __future__ import annotations
 
 import json
@@ -22,17 +22,17 @@ INDICES, SEEDS = 2**31, 2**64  # scenes of a split, and seeds of its scenes: fro
 
 @dataclass(frozen=True)
 class Station:
-    """A place that an action can lead to: where a picture shows it, down and across, in the unit of the numbers that are
-    the action's first place; and what ActionSpace.station_numbers are then."""
+    """A place that an action can lead to. `seen` is where a picture shows it, down and across, in the unit of the action's
+    first place. `values` are the values of ActionSpace.station_numbers there."""
     seen: tuple[float, float]
     values: tuple[float, ...]
 
 
 @dataclass(frozen=True)
 class ActionSpace:
-    """What the numbers of an action mean. `rotations`: numbers that are a unit vector together, as indices; they are
-    normalised, all others clipped to their bounds, when an action is carried out. Where an action leads to one of a few
-    `stations`, `station_numbers` are the indices of those numbers that are constants of each; else both are empty."""
+    """What the numbers of an action mean. `rotations` are indices of numbers that are a unit vector together: these are
+    normalised, and all others clipped to their bounds, when an action is carried out. If an action leads to one of a few
+    `stations`, `station_numbers` are the indices of numbers that are constants of a station; else both are empty."""
     names: tuple[str, ...]
     units: tuple[str, ...]
     low: Numbers
@@ -42,7 +42,7 @@ class ActionSpace:
     stations: tuple[Station, ...] = ()
 
     def to_metres(self, scaled: numpy.typing.ArrayLike) -> Numbers:
-        """Numbers within [-1, 1] -> the action; one action, or a row each. A rotation of no length becomes no turn."""
+        """Scales numbers within [-1, 1] to an action; one action, or a row each. A rotation of length 0 becomes no turn."""
         given = numpy.asarray(scaled, numpy.float64)
         if given.shape[-1:] != self.low.shape or not numpy.isfinite(given).all():
             raise ValueError(f"action: expected {len(self.low)} finite numbers, got {scaled!r}")
@@ -54,13 +54,13 @@ class ActionSpace:
         return metres
 
     def from_metres(self, action: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float32]:
-        """The other way: what a learner of numbers within [-1, 1] is to imitate."""
+        """Scales an action to [-1, 1], the inverse of to_metres(): the label for a learner of such numbers."""
         scaled = 2 * (numpy.asarray(action, numpy.float64) - self.low) / (self.high - self.low) - 1
         return numpy.clip(scaled, -1, 1).astype(numpy.float32)
 
 
 class Scenario:
-    """A task with its commands, layouts and test arms: a shipped one's id, or a file of one's own."""
+    """A task with its commands, layouts and test arms, by the id of a shipped scenario or by a file of your own (`path`)."""
 
     def __init__(self, id: Optional[str] = None, *, path: Union[str, os.PathLike[str], None] = None) -> None:
         self._core = _core.scenario(id, None if path is None else os.fspath(path))
@@ -82,7 +82,7 @@ class Scenario:
                                         tuple(Station(tuple(one["seen"]), tuple(one["values"])) for one in stations["all"]))
 
     def command(self, index: int) -> Command:
-        """As Method.select() is given it."""
+        """Command `index`, as Method.select() gets it."""
         second = self._core.second
         return Command(self.commands[index], self.task, SecondRole(*second) if second else None)
 
@@ -93,7 +93,7 @@ class Scenario:
 
     @property
     def usual_layout(self) -> str:
-        """The layout of the first shipped suite that has the scenario; its own first one where none has."""
+        """The layout of the first shipped suite that has the scenario; the scenario's own first layout if none has it."""
         for file in sorted((pathlib.Path(_core.data_directory()) / "suites").glob("*.json")):
             suite = json.loads(file.read_text())
             if self.id in suite.get("scenarios", []) and suite["layouts"][0] in self.layouts:
@@ -105,9 +105,9 @@ class Scenario:
 
 
 class StepResult(NamedTuple):
-    """What an action led to. `failure`: "none", or a word of docs/protocol.md; `came_to_rest`: else it was cut off.
-    `distance`: how far each part of success is from being right, 0 where it is; all 0 in a success. The name ends with the
-    unit, _m, _deg or _px (docs/python.md has the parts); one without is 0 or 1."""
+    """What an action led to. `failure` is "none" or a word of docs/protocol.md. If `came_to_rest` is False, the episode was cut
+    off. `distance` has how far each part of success is from being right, 0 where it is right; all are 0 in a success. A part's
+    name ends with its unit, _m, _deg or _px (docs/python.md lists the parts); a part without a unit is 0 or 1."""
     observation: Observation
     success: bool
     failure: str
@@ -121,7 +121,7 @@ def _expect(name: str, value: int, count: int) -> None:
 
 
 def as_scenario(scenario: Union[str, Scenario]) -> Scenario:
-    """By its id, or as it is."""
+    """The scenario, given itself or its id."""
     return scenario if isinstance(scenario, Scenario) else Scenario(scenario)
 
 
@@ -138,8 +138,8 @@ def _observation(seen: Any) -> Observation:
 
 class Environment:
     """Scenes of one scenario on one engine, seen as a run's methods see them. Arrays are never reused. One thread at a
-    time; another one's call meanwhile raises RuntimeError, as does a call out of order. `shadows`: observations tell
-    whose shadow is where, as for a method that needs it."""
+    time: a second thread's call meanwhile raises RuntimeError, as does a call out of order. With `shadows`, observations
+    say whose shadow is where, as for a method that needs it."""
 
     def __init__(self, scenario: Union[str, Scenario], engine: str = "mujoco", layout: Optional[str] = None, *,
                  shadows: bool = False) -> None:
@@ -150,14 +150,14 @@ class Environment:
 
     @property
     def action_space(self) -> ActionSpace:
-        """The scenario's: names, units and bounds of an action's numbers."""
+        """Names, units and bounds of the numbers of the scenario's actions."""
         return self.scenario.action_space
 
     def reset(self, split: str = "train", index: int = 0, *, arm: Optional[str] = None, seed: int = 0,
               own_scenes: Optional[int] = None) -> Observation:
-        """Scene `index`. Test scenes are of an arm (the first if None), with its errors of perception. `seed`: the
-        training seed for split train, the scene seed for test. `own_scenes`: of a training seed that has test scenes of
-        its own, as in the suite mobile. An index is below 2^31, a seed below 2^64, else ValueError."""
+        """Begins scene `index` and returns what is seen. Test scenes are of an arm (the first if None), with its errors of
+        perception. `seed` is the training seed for split train, the scene seed for test. `own_scenes` is a training seed with
+        test scenes of its own, as in the suite mobile. An index from 2^31 on, or a seed from 2^64 on, raises ValueError."""
         if split not in SPLITS:
             raise ValueError(f"split {split!r}: expected train, dev or test")
         _expect("index", index, INDICES)
@@ -168,7 +168,7 @@ class Environment:
         return _observation(seen)
 
     def step(self, action: numpy.typing.ArrayLike) -> StepResult:
-        """Carries out an action, in metres and unit vectors. A second one goes on from the state that was reached."""
+        """Carries out an action, in metres and unit vectors. A second action starts from the state reached."""
         (*seen, self._rows), *led_to = self._open().step(numpy.ascontiguousarray(action, numpy.float64))
         return StepResult(_observation(seen), *led_to)
 
@@ -184,13 +184,14 @@ class Environment:
 
     @property
     def instance_rows(self) -> numpy.typing.NDArray[numpy.int16]:
-        """The last observation's instances: id, index into object types and into textures, visible pixels; -1 unused."""
+        """The last observation's instances, a row each: id, index into object types and into textures, visible pixels; unused
+        rows are -1."""
         self._open().scene_hash
         return self._rows
 
     @property
     def scene_hash(self) -> str:
-        """16 digits: as episodes.jsonl names the present scene."""
+        """The hash, 16 digits, by which episodes.jsonl names the present scene."""
         return str(self._open().scene_hash)
 
     def close(self) -> None:
@@ -218,8 +219,8 @@ class Batch(NamedTuple):
 
 
 class Pool:
-    """`count` environments of one scenario, advanced together on `threads` threads (all cores if None). Batches are new
-    arrays. After a fork it raises RuntimeError in the child."""
+    """`count` environments of one scenario, advanced together on `threads` threads (all cores if None). Each batch
+    is a new array. After a fork, the child's calls raise RuntimeError."""
 
     def __init__(self, scenario: Union[str, Scenario], count: int, threads: Optional[int] = None, engine: str = "mujoco",
                  layout: Optional[str] = None) -> None:
@@ -233,8 +234,8 @@ class Pool:
 
     def reset(self, split: str, indices: Sequence[int], *, arms: Optional[Sequence[str]] = None,
               seeds: Optional[Sequence[int]] = None, at: Optional[Sequence[int]] = None) -> Batch:
-        """Begins scene indices[i] in environment at[i] (all, in order, if None); indices and seeds as in
-        Environment.reset()."""
+        """Begins scene indices[i] in environment at[i]; without `at`, in all environments in order. Indices and seeds are those
+        of Environment.reset()."""
         at = range(len(self)) if at is None else at
         for index in indices:
             _expect("index", index, INDICES)
@@ -245,13 +246,14 @@ class Pool:
 
     def step(self, actions: numpy.typing.ArrayLike, at: Optional[Sequence[int]] = None
              ) -> tuple[Batch, numpy.typing.NDArray[numpy.bool_], list[str], list[dict[str, float]]]:
-        """Carries out a row of `actions` in each; -> observations, successes, failures, distances (StepResult)."""
+        """Carries out a row of `actions` in each environment. Returns observations, successes, failures,
+        distances (StepResult)."""
         at = range(len(self)) if at is None else at
         seen, success, failures, _, distances = self._pool.step(list(at), numpy.ascontiguousarray(actions, numpy.float64))
         return Batch(*seen), success.view(numpy.bool_), failures, distances
 
     def expert_actions(self) -> Numbers:
-        """The oracle's, a row for each environment."""
+        """The oracle's actions, a row for each environment."""
         actions: Numbers = self._pool.expert_actions(list(range(len(self))))
         return actions
 
@@ -263,6 +265,6 @@ class Pool:
 
     @property
     def scene_hashes(self) -> list[str]:
-        """As Environment.scene_hash."""
+        """The Environment.scene_hash of each environment."""
         hashes: list[str] = self._pool.scene_hashes
         return hashes
