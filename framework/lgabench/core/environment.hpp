@@ -23,8 +23,8 @@ inline constexpr const char* abstraction_empty = "abstraction_empty";  // nothin
 inline constexpr const char* method_error = "method_error";            // the method threw, or gave no finite action
 }  // namespace failure
 
-/// How far a part of what success asks is from being right: 0 where it is. The name ends with the unit, _m, _deg or
-/// _px; without one it is 0 or 1.
+/// How far one part of success is from being right, 0 where it is right. The part's name ends with its unit, _m, _deg
+/// or _px; a part without a unit is 0 or 1.
 struct Gap {
   std::string part;
   double value = 0;
@@ -38,17 +38,17 @@ struct StepResult {
   bool is_success = false;
   bool recoverable = true;          // false: no further action can make it a success
   Failure failure = failure::none;  // none exactly if is_success
-  std::uint8_t taken = 0;           // the instance that was moved on purpose; 0: none, or it is not told
-  std::vector<Gap> gaps;            // the same parts in every scene of a task, all 0 if is_success; none: not told
+  std::uint8_t taken = 0;           // the instance that was moved on purpose; 0: none, or unknown
+  std::vector<Gap> gaps;            // the same parts in every scene of a task, all 0 if is_success; empty: unknown
 };
 
-/// Limits of success in place of the protocol's; what is not given is the protocol's. Of a task that is judged by an
-/// area the target's centre must be in it and as near to its middle as `position_m`.
+/// Limits of success in place of the protocol's, which hold for what is not given. In a task that is judged by an area,
+/// the target's centre must be in the area and within `position_m` of its middle.
 struct JudgeLimits {
   std::optional<double> position_m{}, angle_deg{};
 };
 
-/// What an action led to, under such limits. The narrower they are, the fewer successes there are.
+/// What an action led to, under such limits. Narrower limits give fewer successes.
 struct Rejudged {
   Failure failure = failure::none;
   std::optional<double> distance_m{};  // seen from above: from where the task asks for it, of the nearest target
@@ -60,25 +60,25 @@ struct EngineBody {
   std::optional<BodyPhysics> physics;  // none: the engine cannot tell
 };
 
-/// One thread at a time. Every call but reset needs a reset before it.
+/// An environment on an engine. One thread at a time. Every call but reset() needs a reset() before it.
 class Environment {
  public:
   virtual ~Environment() = default;
 
-  /// What the numbers of its actions mean; does not change.
+  /// What the numbers of the environment's actions mean; does not change.
   virtual const ActionSpace& action_space() const = 0;
 
   /// Builds the scene anew. Pure: the same scene gives the same bytes, whatever was played before.
-  /// @throws EngineError if the engine fails, InputError for an object type or texture that is not known.
+  /// @throws EngineError if the engine fails, InputError for an unknown object type or texture.
   virtual Observation reset(const Scene& scene) = 0;
 
-  /// What is seen in that view, as by observe() and step() until the next reset(). The oracle then reads its places off
-  /// that picture as if it were the usual one: a camera that moved leads it astray as far as the picture moved. Actions
-  /// are carried out as ever. @throws InputError unless EnvironmentType::has_views().
+  /// Returns what is seen in that view, in which observe() and step() then see until the next reset(). The oracle reads
+  /// its places off that picture as if it were the usual one: a moved camera leads the oracle astray as far as the
+  /// picture moved. Actions are carried out as ever. @throws InputError unless EnvironmentType::has_views().
   virtual Observation look(const View& /*view*/) { throw InputError("environment: it has its usual view alone"); }
 
-  /// Whether what is seen from now on, until it is said otherwise, has Observation::shadows. Pictures are the same.
-  /// @throws InputError where shadows are asked for and the environment has none.
+  /// Sets whether observations have Observation::shadows from now on. Pictures stay the same. @throws InputError where
+  /// shadows are asked for and the environment has none.
   virtual void show_shadows(bool on) {
     if (on) throw InputError("environment: its pictures have no shadows that are told apart");
   }
@@ -88,21 +88,21 @@ class Environment {
   /// @throws MethodError for an action that is not executable(), EngineError if the engine fails.
   virtual StepResult step(const Action& action) = 0;
 
-  /// What the engine has now of the scene's objects, in their order; what perturbations of bodies are proved by. None:
-  /// the environment does not say, and such a perturbation counts as without effect.
+  /// The scene's objects as the engine has them now, in their order; checks of perturbed bodies compare them. Empty
+  /// where the environment does not say: such a perturbation then counts as without effect.
   virtual std::vector<EngineBody> bodies() const { return {}; }
 
-  /// What is seen in the present state; also while step() is under way, by whoever looks on at the engine.
+  /// What is seen in the present state. An onlooker at the engine may call this while step() is under way.
   virtual Observation observe() = 0;
 
   /// The oracle's action in the present state, for the scene's target.
   virtual Action expert_action() const = 0;
 
-  /// The oracle's rule applied to another object: what it would do were `instance_id` the target.
+  /// The action that the oracle would choose if `instance_id` were the target.
   virtual Action expert_action_for(std::uint8_t instance_id) const = 0;
 
-  /// What the last step() led to, judged once more; with no limits given, failure is that step's. @throws InputError
-  /// where an environment has no limits to change.
+  /// Judges once more what the last step() led to. Without limits, the failure is that step's. @throws InputError where
+  /// an environment has no limits to change.
   virtual Rejudged judged_again(const JudgeLimits& /*limits*/) const {
     throw InputError("environment: it is judged by the protocol's limits alone");
   }

@@ -16,7 +16,7 @@
 
 namespace lgabench {
 
-/// A place in JSON that a value is read from, is written to, or is described for: one of the three is not null.
+/// A place in JSON that a value is read from, written to, or described for. One of the three pointers is not null.
 struct Slot {
   const JsonReader* read = nullptr;
   Json* write = nullptr;   // null until the value is written
@@ -27,7 +27,7 @@ struct Slot {
   Slot at(Json& member) const { return write ? Slot{nullptr, &member} : Slot{nullptr, nullptr, &member, strict}; }
 };
 
-/// When a member is written, and what it may be.
+/// When a member is written, and which values it may have.
 struct Form {
   bool needed = true, written = true;         // needed: else the value stays as it is where the member is not there
   bool may_be_null = false, null = false;     // null: the value that is written
@@ -59,7 +59,7 @@ class Fields {
   void operator()(const char* name, T&& value, const Form& form = {}) {
     add(name, form, [&](const Slot& slot) { visit(slot, value, form); });
   }
-  /// The object that is read, for what forms do not say; null where none is.
+  /// The object that is read, for what forms cannot express; null where none is read.
   const JsonReader* reading() const { return slot_.read; }
   /// Names of the members that were described.
   const std::vector<std::string>& names() const { return names_; }

@@ -1,5 +1,5 @@
-// Perturbation axes: one way each in which what is seen of a test scene differs from the control's (docs/protocol.md,
-// section 8).
+// Perturbation axes. Each is one way in which a test scene, as it is seen, differs from the control's
+// (docs/protocol.md, section 8).
 #pragma once
 #include <array>
 #include <functional>
@@ -14,47 +14,48 @@
 
 namespace lgabench {
 
-/// The parts of an episode that are told apart, in the order of a record.
+/// The parts of an episode that a record compares, in its order.
 enum class EpisodePart { objects, physics, rgb, ids, instances, words, answers, selection, input, control };
 /// Their names in a record.
 constexpr std::array part_names{"objects", "physics", "rgb",       "ids",   "instances",
                                 "words",   "answers", "selection", "input", "control"};
 constexpr std::size_t parts = part_names.size();
 
-/// How a body may differ from its type's: each times that of the type.
+/// How a body may differ from its type: factors on the type's values.
 struct BodyVariant {
   double scale = 1, friction = 1, mass = 1;
 };
 bool operator==(const BodyVariant& a, const BodyVariant& b);
 
-/// Those of an axis' scenes at one level: any of these sizes, one friction and one mass.
+/// The bodies of an axis' scenes at one level: any of these sizes, one friction and one mass.
 struct BodyVariants {
   std::vector<double> scales{1};
   double friction = 1, mass = 1;
   int more = 0;  // bodies beside the control's
 };
 
-/// One axis. Level 0 is the control, which it leaves as it is. The stream is the episode's own and the same at every
-/// level: what it gives is the direction of a change, and the level gives the size alone.
+/// One axis. Level 0 is the control, which stays as it is. The stream is the episode's own and the same at every level:
+/// it gives the direction of a change, and the level gives the size alone.
 struct PerturbationAxis {
   std::string id;
   std::vector<std::string> levels;           // what each is, in a few words; the first is level 1
   std::vector<EpisodePart> changes;          // in nearly every episode
   std::vector<EpisodePart> may_change = {};  // in some
-  /// What is perceived at that level. Null: nothing else than without it.
+  /// What is perceived at that level. Null: the axis leaves perception as it is.
   std::function<Observation(Observation, const Scenario&, int level, RandomStream)> perceive = nullptr;
-  /// How likely each true feature is missing from what was selected, and each wrong one added. Null: as it is.
+  /// How likely each true feature is missing from what was selected, and each wrong one added. Null: Selections stay.
   std::function<double(int level)> selection_errors = nullptr;
   /// Changes how the scene is looked at. Null: not at all.
   std::function<void(View&, const Scene&, int level, RandomStream)> look = nullptr;
-  /// The control's scene, changed. Null: as it is.
+  /// The control's scene, changed. Null: the scene stays.
   std::function<Scene(Scene, const Scenario&, int level, RandomStream)> change = nullptr;
-  /// What bodies change() may ask for, which engines are told before. Null: as they are.
+  /// The bodies that change() may ask for, which engines are told beforehand. Null: the usual ones.
   std::function<BodyVariants(int level)> bodies = nullptr;
   bool rewords = false;  // gives the scenario's command in the words of that level (ScenarioCommand::wording)
   /// Another command that is demonstrated: its words are given in place of the scene's own. Null: the words stay.
   std::function<int(const Scene&, const Scenario&, RandomStream)> other = nullptr;
-  /// What is given in place of both at that level: commands of no meaning, which a scenario's arm adds (add_words()).
+  /// Commands without a meaning, which are given in place of both at that level and which a scenario's arm adds
+  /// (add_words()).
   std::function<std::vector<std::string>(int level)> words = nullptr;
   /// Why scenes of the scenario cannot have it at that level, in a few words; "" where they can. Null: all can.
   std::function<std::string(const Scenario&, int level)> lacks = nullptr;
@@ -77,9 +78,9 @@ inline constexpr const char* perturbation_library = "liblgabench_perturbations.s
 /// lgabench's own, loaded when it is first asked for. @throws InputError where it is not there.
 const std::vector<PerturbationAxis>& perturbation_axes();
 
-/// Those that were added, in that order.
+/// The axes that were added, in that order.
 const PluginAxes& plugin_axes();
-/// Adds one for what is read from now on; `all` does without it. @throws InputError for an id that is taken.
+/// Adds an axis for all that is read from now on. It is no part of `all`. @throws InputError for an id that is taken.
 void add_plugin_axis(PerturbationAxis axis);
 /// The parts' names.
 std::vector<std::string> part_words(const std::vector<EpisodePart>& some);
@@ -95,9 +96,9 @@ std::vector<std::string> perturbation_ids(const PluginAxes& more = plugin_axes()
 /// The axis of that id, or every one of lgabench's own for `all`. @throws InputError that lists the known ones.
 std::vector<const PerturbationAxis*> axes_named(const std::string& id, const PluginAxes& more = plugin_axes());
 
-/// Those by which the arm's scenes differ: of `all`, the ones that the scenario can have.
+/// The axes by which the arm's scenes differ; of `all`, those that the scenario can have.
 std::vector<const PerturbationAxis*> axes_of(const Scenario& scenario, const Perturbation& perturbation);
-/// Why the scenario cannot have it, in a few words; "" where it can. It can always have `all`.
+/// Why the scenario cannot have the axis, in a few words; "" where it can. Every scenario can have `all`.
 std::string lacking(const Scenario& scenario, const Perturbation& perturbation);
 /// Every body that scenes of the scenario's arms may ask for, the usual one first.
 std::vector<BodyVariant> body_variants(const Scenario& scenario);

@@ -1,4 +1,4 @@
-// A method's own files, as the worker takes them: read by descriptor (core/files.cpp).
+// A method's own files, which the worker reads by descriptor (core/files.cpp).
 #pragma once
 #include <cstdint>
 #include <string>
@@ -8,17 +8,17 @@
 
 namespace lgabench {
 
-/// A directory that somebody else may change at any time: opened once, and read by no way that leads out of it.
+/// A directory that another process may change at any time. It is opened once, and no path leads out of it.
 class PlainDirectory {
  public:
-  /// A link, like what is no directory or not there, holds nothing.
+  /// A link, a missing directory or what is no directory counts as empty.
   explicit PlainDirectory(const fs::path& path);
   ~PlainDirectory();
   PlainDirectory(const PlainDirectory&) = delete;
   PlainDirectory& operator=(const PlainDirectory&) = delete;
 
-  /// Names of what is kept of it: sorted, of at most 100 regular files whose names are letters, digits, "_", "-" and
-  /// ".", the last not first. What else it holds is passed over.
+  /// Sorted names of at most 100 regular files whose names are letters, digits, "_", "-" and ".", which is not first.
+  /// Other entries are passed over.
   std::vector<std::string> kept_names() const;
   /// The bytes of the regular file of that name. @throws InputError as lgabench::read_file().
   std::string read_file(const std::string& name, std::uintmax_t most = std::uintmax_t{1} << 30) const;

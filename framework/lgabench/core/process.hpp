@@ -1,4 +1,4 @@
-// How this project starts a process: what is easily forgotten is done in one place.
+// Starts processes: what is easily forgotten is done here, in one place.
 #pragma once
 #include <sys/types.h>
 
@@ -11,7 +11,7 @@
 
 namespace lgabench {
 
-/// What is started, and with what.
+/// A program to start, and what it is started with.
 struct ProcessStart {
   std::vector<std::string> words;      // the program and its arguments; without "/" it is looked for on PATH
   std::vector<std::string> variables;  // NAME=value: its whole environment
@@ -20,14 +20,14 @@ struct ProcessStart {
   std::function<bool()> in_child{};                // just before the program; false ends the process with status 126
 };
 
-/// Our own environment, as NAME=value, but for what `set` names; `set` comes first.
+/// This process's environment, as NAME=value, with the variables of `set` replaced; these come first.
 std::vector<std::string> environment_with(const std::vector<std::string>& set);
 
 /// The exit status of a program that is not there, or cannot be run.
 constexpr int not_started = 127;
 
-/// Starts a process that dies with the thread that started it and holds no other descriptor than those named and 0 to
-/// 2. What cannot be run ends as not_started. `in_child` runs in a copy of this process: it takes no lock that
+/// Starts a process that dies with the thread that started it and holds no descriptors but those named and 0 to 2. A
+/// program that cannot be run ends as not_started. `in_child` runs in a copy of this process: it must take no lock that
 /// another thread may hold. @throws InputError where the system starts no process.
 pid_t start_process(const ProcessStart& start);
 

@@ -41,12 +41,12 @@ struct Arm {
   int wording = 0;                                // above 0: gives the command in those other words
 };
 
-/// Whose true distributions: the annotations that the paper's authors released with their code where there are any, or
-/// those that the paper's appendix prints.
+/// Which true distributions hold: the annotations that the paper's authors released with their code, where there are
+/// any, or those that the paper's appendix prints.
 enum class Truth { released, printed };
 
 struct PerturbationAxis;
-/// Axes that plugins add. What perceives through one is set by whoever runs its plugin.
+/// Axes that plugins add. Whoever runs such a plugin sets what its axis perceives.
 using PluginAxes = std::vector<std::shared_ptr<PerturbationAxis>>;
 
 /// A task with its commands, what is shown and what is tested. A value; read from scenarios/ID.json.
@@ -57,14 +57,14 @@ struct Scenario {
   FeatureSpace space;
   std::vector<ScenarioCommand> commands;
   std::string answers_of;  // the scenario whose recorded answers hold for this one; mostly its own id
-  /// Files of the data directory's answers/, without their ending: whose answers "recorded" means here, and which of
-  /// them people are given to edit.
+  /// Files of the data directory's answers/, without their ending: the one that "recorded" means here, and the one that
+  /// people are given to edit.
   std::string recorded = "claude", edited = "claude";
   std::shared_ptr<const SceneContent> train;  // never null
   bool as_method_asks = true;  // training targets and second sets come from the Selection, if the method wants that
   std::vector<Arm> tests;
-  /// People are asked in scenes (HumanAnswers::takes()): the demonstrated ones and so many that nobody demonstrated.
-  /// They err with that probability. None: nobody is.
+  /// People are asked in the demonstrated scenes and in so many that nobody demonstrated (HumanAnswers::takes()). They
+  /// err with that probability. None: nobody is asked.
   struct Questions {
     int scenes = 0;
     double errs = 0;
@@ -96,8 +96,8 @@ Scenario read_scenario(const Json& json, const std::string& file);
 /// under "printed" stands in its place, and "truth" says so. @throws InputError that lists the known ids.
 Scenario load_scenario(const std::string& id, Truth truth = Truth::released);
 
-/// Ids of the arms that a scenario's JSON has played: those that "played" names, else all. The others shape the
-/// engine's world and the commands as if they were, so that outcomes are the same. @throws InputError
+/// Ids of the arms that a scenario's JSON plays: those that "played" names, else all. The other arms still shape the
+/// engine's world and the commands, so that outcomes stay the same. @throws InputError
 std::vector<std::string> played_arms(const Json& scenario);
 
 /// "released" or "printed". @throws InputError for another word.

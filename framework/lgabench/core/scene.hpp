@@ -1,4 +1,4 @@
-// A scene: all that is sampled for an episode, before physics.
+// A scene: everything that is sampled for an episode, before physics.
 #pragma once
 #include <cstdint>
 #include <map>

@@ -7,8 +7,8 @@
 
 namespace lgabench {
 
-/// A directory lgabench-NAME.XXXXXX among the system's temporary ones, which is gone when this is. What a killed
-/// process left of that name goes when the next one is made: a directory is somebody's as long as its lock is held.
+/// A directory lgabench-NAME.XXXXXX among the system's temporary ones, deleted with this object. Making one deletes
+/// those of that name that a killed process left: a directory is in use as long as its lock is held.
 class Scratch {
  public:
   /// @throws InputError where none can be made.
