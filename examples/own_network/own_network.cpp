@@ -29,7 +29,7 @@ class OwnNetwork : public CloningMethod {
   }
 };
 
-// An option's default fixes its type; `lgabench info own_network` prints all options, --set own_network.hidden=64 sets one.
+// An option's default fixes its type; `lgabench info own_network` lists all, --set own_network.hidden=64 sets one.
 LGABENCH_METHOD("own_network", "0.1", "Two linear layers on a coarse goal mask", OwnNetwork,
                 "{" LGABENCH_TRAINING_OPTIONS R"(,
   "hidden": {"default": 128, "min": 1, "help": "units of the hidden layer", "source": "this example"}})")

@@ -21,7 +21,7 @@ struct TaskInfo {
   std::string id;
   std::vector<std::string> layouts;   // how its objects may be placed
   std::optional<SecondRole> second;   // the set of objects that its commands speak of beside the target
-  std::vector<std::string> failures;  // the task's own words for failures, beside those that all of the environment's share
+  std::vector<std::string> failures;  // the task's own words, beside those that all tasks of the environment share
   std::string example;                // a shipped scenario: what checks play where any scenario of the task will do
 };
 
@@ -120,7 +120,7 @@ class EnvironmentType {
   /// The scene with everything that can be brought somewhere, or swept, scaled by that factor.
   virtual Scene resized(Scene scene, double scale) const;
   /// The scene with the largest target for which room is left, by 5 mm: that of the greatest fitting one of `scales`,
-  /// which grow.
+  /// which grow, if any.
   virtual Scene with_larger_target(Scene scene, const std::vector<double>& scales) const;
   /// What is seen at the scene's beginning, without an engine. One thread at a time.
   virtual Observation draw(const Scene& scene, const View& view) const = 0;
