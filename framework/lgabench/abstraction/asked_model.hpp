@@ -6,31 +6,31 @@
 
 namespace lgabench {
 
-/// A server's model, and all that a request to it holds beside the messages. Replies of two that differ are no one's
-/// answers together.
+/// A server's model, and all that a request to it holds beside the messages. Replies of two that differ are never
+/// mixed.
 struct AskedModel {
   std::string name;                    // as the server names it
   Json fields = {{"temperature", 0}};  // of the request's body, beside model and messages
 
   /// The request's body.
   Json request(const Json& messages) const;
-  /// What was asked for with that body. @throws InputError where it is no object.
+  /// Reads who was asked from a request's body. @throws InputError where it is no object.
   static AskedModel of(const std::string& name, const JsonReader& request);
 };
 
-/// The usual request with its fields changed by a JSON merge patch (RFC 7396), as --request gives it: a null leaves one
-/// out; no patch where it is "". @throws InputError for one that is no object, or changes what lgabench itself decides:
-/// model, messages, stream.
+/// The usual request with its fields changed by a JSON merge patch (RFC 7396), as --request gives it: a null leaves a
+/// field out, and "" is no patch. @throws InputError for a patch that is no object, or changes what lgabench itself
+/// decides: model, messages, stream.
 AskedModel asked_model(const std::string& name, const std::string& patch);
-/// The least patch that makes its request of the usual one, {} where it is that.
+/// The smallest patch that turns the usual request into the model's, {} if they are equal.
 Json patch_of(const AskedModel& model);
 
 /// "NAME", or "NAME PATCH" where there is one: what Cell::answers and a Selection's source say.
 std::string to_text(const AskedModel& model);
-/// The other way.
+/// Reads what to_text() writes.
 AskedModel read_asked_model(const std::string& text);
 
-/// A command line's words for it: --model NAME, and --request 'PATCH' where there is one.
+/// A command line's words for the model: --model NAME, and --request 'PATCH' where there is one.
 std::string command_words(const AskedModel& model);
 
 }  // namespace lgabench

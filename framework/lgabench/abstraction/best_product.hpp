@@ -1,4 +1,4 @@
-// What one product of types and textures can do at most for a command: a reference, which knows the truth.
+// The best that one product of types and textures can do for a command: a reference, which knows the truth.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// A language model's replies on file, to be replayed.
+// A file of a language model's replies, to be replayed.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -19,16 +19,16 @@ struct ChatReply {
   double seconds = 0;    // from the first attempt to the reply
 };
 
-/// A file of JSON lines {"key", "model", "request", "reply", "tokens", "seconds"}; grows a line a reply, each on the
-/// disk before add() returns, so that an interrupted series of questions goes on where it stopped. May be used by
+/// A file of JSON lines {"key", "model", "request", "reply", "tokens", "seconds"}; each reply adds a line, which is on
+/// the disk before add() returns, so that an interrupted series of questions goes on where it stopped. May be used by
 /// several threads, and by several processes that take turns to ask.
 class Cassette {
  public:
-  /// The one that asks, of all processes with this file, as long as it lives: no question is paid for twice.
+  /// While a Turn lives, its process alone, of all with this file, asks: no question is paid for twice.
   class Turn {
    public:
-    /// Waits until nobody else has it, which `waiting` is told of, then reads the replies that came meanwhile. The file
-    /// is made if need be, a last line that was cut off is removed. @throws InputError
+    /// Waits until no other process has the turn, which `waiting` is told of, then reads the replies that came
+    /// meanwhile. Makes the file if need be, and removes a last line that was cut off. @throws InputError
     Turn(Cassette& cassette, const std::function<void(const std::string&)>& waiting);
     ~Turn();
     Turn(const Turn&) = delete;
@@ -38,8 +38,8 @@ class Cassette {
     int lock_;
   };
 
-  /// Reads what is there; a file that does not exist is empty. A last line that was cut off is no reply, which is said
-  /// on stderr. @throws InputError with file and line for anything else that is not a reply.
+  /// Reads the file; a missing one counts as empty. A last line that was cut off is no reply, which stderr says.
+  /// @throws InputError with file and line for anything else that is not a reply.
   explicit Cassette(const std::filesystem::path& file);
 
   /// Hash of the whole request (model, messages, parameters) and of the prompt template's version.
@@ -60,7 +60,7 @@ class Cassette {
   std::string only_model() const;
 
  private:
-  bool read();  // the lines that were added since; whether all of them are whole
+  bool read();  // reads lines that were added since; whether all of them are whole
 
   std::filesystem::path file_;
   std::size_t size_ = 0;  // of what was read

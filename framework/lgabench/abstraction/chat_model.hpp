@@ -1,4 +1,4 @@
-// A language model that is asked now, or was: one chat request a question.
+// A language model that is asked now, or was earlier: one chat request for each question.
 #pragma once
 #include <functional>
 #include <memory>
@@ -12,15 +12,15 @@
 
 namespace lgabench {
 
-/// A reply came, or did not in time, and cannot be an answer: cut off, refused, empty, no completion. Other questions
-/// are not concerned.
+/// One question has no answer: its reply is late, cut off, refused, empty or no completion. Other questions are not
+/// concerned.
 struct NoAnswer : MethodError {
   using MethodError::MethodError;
 };
 
 /// Questions about a command that have no answer, once all others were asked and their replies kept.
 struct Unanswered : MethodError {
-  /// what() names all candidates and the first reason.
+  /// what() names all candidates without an answer, and the first reason.
   Unanswered(const std::string& in_a_line, std::vector<std::string> which)
       : MethodError(in_a_line), questions(std::move(which)) {}
   std::vector<std::string> questions;  // a line each: the candidate, and why
@@ -40,44 +40,45 @@ class ChatClient {
   virtual ChatReply complete(const Json& request) = 0;
 };
 
-/// Which model is asked, and how hard.
+/// Which model is asked, and how much at once.
 struct ChatOptions {
   std::string model;                                      // to_text() of an AskedModel
   int concurrency = 4;                                    // requests under way at once
-  int max_queries = -1;                                   // to the server, in the model's life; -1: no limit
+  int max_queries = -1;                                   // queries to the server, in this object's life; -1: no limit
   std::function<void(int asked, int all)> progress = {};  // called from answer()'s thread alone, every 10 s at least
-  std::function<void(const std::string&)> waiting = {};   // told in a line what it waits for; likewise
-  std::function<void(bool begins)> in_line = {};          // told where it waits for another process to have asked
+  std::function<void(const std::string&)> waiting = {};   // told, in a line, what the model waits for; likewise
+  std::function<void(bool begins)> in_line = {};          // told where the model waits for another process that asks
 };
 
-/// A prompt as a request has it.
+/// The messages of a request, made of a prompt.
 Json messages_of(const Prompt& prompt);
 
-/// Asks what the cassette does not hold, if there is a client; provenance live once a reply came from it, else
-/// cassette.
+/// Asks the client, if there is one, what the cassette does not hold. Its provenance is live once a reply came from the
+/// client, else cassette.
 class ChatLanguageModel : public LanguageModel {
  public:
   /// Both are borrowed and must outlive the model; `client` may be nullptr: then the cassette must hold every reply.
   ChatLanguageModel(Cassette& cassette, ChatClient* client, ChatOptions options);
 
-  /// A reply without a final answer is asked for up to three times, until it repeats itself; one that is cut off,
-  /// refused or empty once. @throws MethodError where the server fails and where none of the first 20 questions of an
-  /// empty cassette has an answer, Unanswered for questions without an answer: they are never a no. The replies
+  /// A question whose reply has no final answer is asked up to three times, until the reply repeats itself; one whose
+  /// reply is cut off, refused or empty is asked once. @throws MethodError where the server fails and where none of the
+  /// first 20 questions of an empty cassette has an answer, Unanswered for questions without an answer: they are never
+  /// a no. The replies
   /// that came are in the cassette.
   /// InputError without a client where the cassette lacks a reply (names the command line that asks), or where
   /// `max_queries` does not suffice.
   std::vector<bool> answer(const Command& command, const FeatureSpace& space,
                            const std::vector<Question>& questions) override;
-  /// One question; a reply without a meaning that can be read is answered with what is wrong, twice at most, each
-  /// asking a query. @throws as answer().
+  /// Asks one question. If the reply's meaning cannot be read, the model is told why and asked again, twice at most;
+  /// each asking is a query. @throws as answer().
   Meaning mean(const Command& command, const FeatureSpace& space) override;
-  /// Likewise; empty, at no cost, where nobody can be asked: without a client, of what the cassette lacks.
+  /// Likewise. Empty, at no cost, where nobody can be asked: there is no client, and the cassette lacks the reply.
   std::vector<Hypothesis> hypotheses(const Command& command, const FeatureSpace& space) override;
   /// Which of the numbers 1 to `marks` in a picture, PNG, the command could mean, in one question (marked()). The
   /// server gets the picture; key and cassette hold its SHA-256. @throws as answer(), and Unread where no reply names
   /// marks that there are.
   std::vector<int> look(const Command& command, const std::string& png, int marks);
-  /// How many of these a server would be asked: those without a reply in the cassette.
+  /// How many of these questions would go to a server: those without a reply in the cassette.
   int open_questions(const Command& command, const FeatureSpace& space, const std::vector<Question>& questions) const;
   /// As in ChatOptions: what is not the usual request belongs to the name.
   std::string model() const override { return options_.model; }

@@ -1,4 +1,4 @@
-// What a body in the form of OpenAI's chat completions says, from a server or from a batch's output.
+// Reads bodies in the form of OpenAI's chat completions, from a server or from a batch's output.
 #pragma once
 #include <string>
 

@@ -1,4 +1,4 @@
-// Disputed truths: of which objects two careful readers may not agree whether a command means them.
+// Disputed truths: objects of which two careful readers may disagree whether a command means them.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -18,7 +18,7 @@ DisputedPairs disputed_pairs(const FeatureSpace& space);
 DisputedPairs read_disputed(const std::filesystem::path& file, const FeatureSpace& space);
 
 /// Whether the scene shows an object of a pair that is disputed for the command that it gives. Places do not count, nor
-/// what plays the task's second role: pairs are of what is to be moved.
+/// objects of the task's second set: a pair is of what is to be moved.
 bool is_disputed(const DisputedPairs& pairs, const Scenario& scenario, const Scene& scene);
 
 }  // namespace lgabench

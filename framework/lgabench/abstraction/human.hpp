@@ -12,7 +12,7 @@
 
 namespace lgabench {
 
-/// Stands on the true distribution: an upper bound, no human data, and no human seconds.
+/// Answers with the true distribution: an upper bound, without human data or human seconds.
 class TruthAsHuman : public HumanAnswers {
  public:
   /// `commands` of the scenario, with their truth.
@@ -37,7 +37,7 @@ class TruthAsHuman : public HumanAnswers {
 /// command and the question. Each answers as many questions as the method's option says.
 class AskedInScenes : public TruthAsHuman {
  public:
-  /// Of the command's scenes, so many were demonstrated; `look` shows any of them by number, of the command's number.
+  /// So many of the command's scenes were demonstrated. `look` shows any of them, by command and scene.
   AskedInScenes(const Scenario& scenario, int demonstrations, int most_questions,
                 std::function<std::vector<Placed>(int command, int scene)> look);
 
@@ -57,7 +57,7 @@ class AskedInScenes : public TruthAsHuman {
   std::map<std::string, int> spent_;  // by utterance
 };
 
-/// Answers in the one way that a method declares, so that the truth behind a stand-in reaches nobody else.
+/// Answers only in the way that a method declares, so that the truth behind a stand-in reaches no other method.
 class DeclaredHuman : public HumanAnswers {
  public:
   /// `asks` as in the plugin's descriptor: "specify", "edit", "accept", or anything else for none of them.

@@ -1,4 +1,4 @@
-// Without a language model: the names that stand in the command.
+// Selects without a language model: the names that stand in the command.
 #pragma once
 #include <lgabench/core/selection.hpp>
 

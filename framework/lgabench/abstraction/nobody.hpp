@@ -1,4 +1,4 @@
-// In the place of a language model where nobody is asked: --answers none.
+// Stands in for a language model where nobody is asked: --answers none.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// Where a server of chat completions is, and how patient its client.
+// Where a server of chat completions is, and how patient its client is.
 #pragma once
 #include <functional>
 #include <string>
@@ -14,7 +14,7 @@ struct OpenAiOptions {
   // Told, in a line, why and how long it waits before another attempt; from several threads.
   std::function<void(const std::string&)> waiting{};
   std::string ca_file{};   // certificates of authorities to trust, PEM, in place of this machine's: SSL_CERT_FILE
-  bool was_there = false;  // it answered lately: a connection that is refused may be taken later
+  bool was_there = false;  // it answered lately: a connection that it refuses may succeed later
 };
 
 /// OpenAI's own server, which answers nobody without a key.

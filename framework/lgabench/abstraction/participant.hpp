@@ -27,7 +27,8 @@ struct Participant {
 
   /// nullptr where the participant was not asked.
   const Answer* find(const Scenario& scenario, const std::string& utterance) const;
-  /// Every command of the scenario was answered so: &Answer::specified, from scratch, or &Answer::edited.
+  /// Whether the participant answered every command of the scenario so: &Answer::specified, from scratch, or
+  /// &Answer::edited.
   bool answered_all(const Scenario& scenario, std::optional<Selection> Answer::*how) const;
 };
 

@@ -1,4 +1,4 @@
-// What a person prefers and did not say, learned from what they take (after Peng et al., HRI 2024).
+// Learns what a person prefers and did not say from what they take (after Peng et al., HRI 2024).
 #pragma once
 #include <string>
 #include <utility>
@@ -12,8 +12,8 @@ namespace lgabench {
 /// hypothesis of mean weight, and hypotheses are as likely beside each other as their weights say.
 class Preference {
  public:
-  /// What holds the same objects as another before it is left out, and adds to that one's prior. `unlisted`: what
-  /// nobody named and could be so all the same, with a share of the prior for all of them.
+  /// A candidate with the same objects as an earlier one is left out, and adds to that one's prior. `unlisted` are
+  /// candidates that nobody named; together they have a share of the prior.
   Preference(const Meaning& words, const std::vector<Hypothesis>& hypotheses, const FeatureSpace& space,
              const std::vector<Hypothesis>& unlisted = {}, double share = 0);
 
@@ -25,7 +25,7 @@ class Preference {
 
   /// The words first, then the hypotheses in their order.
   const std::vector<Hypothesis>& candidates() const { return candidates_; }
-  /// Of each candidate; they add up to 1.
+  /// The probability of each candidate; all add up to 1.
   std::vector<double> probabilities() const;
   /// Candidates by number: the likeliest first, of equals the one that holds fewer pairs of the space.
   std::vector<std::size_t> ranked() const;
@@ -36,7 +36,7 @@ class Preference {
   std::vector<double> logs_;           // of what is proportional to the probabilities
 };
 
-/// What preferred() weighs and asks beside what a language model names.
+/// What preferred() weighs beside the hypotheses of a language model, and how much it asks.
 struct Asking {
   int questions = 0;  // at most, to the person
   std::vector<Hypothesis> unlisted{};

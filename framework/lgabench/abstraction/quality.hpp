@@ -9,7 +9,7 @@
 
 namespace lgabench {
 
-/// Of the selected names of one kind. A precision or recall over an empty set is absent.
+/// Quality of the selected names of one kind. A precision or recall over an empty set is absent.
 struct NameQuality {
   std::optional<double> precision, recall;
   double size = 0, true_size = 0;  // numbers of names; whole but in a mean
@@ -27,10 +27,10 @@ using Quality = std::map<std::string, SetQuality>;
 
 Quality quality(const Selection& selection, const Selection& truth);
 
-/// The mean of those that are there; the number itself where all agree, without rounding.
+/// The mean of the values that are present; if all agree, the value itself, without rounding.
 std::optional<double> mean_of(const std::vector<std::optional<double>>& all);
 
-/// Of each set of the first one; a precision or recall is the mean over those that have it.
+/// Means for each set of the first Quality. A precision or recall is the mean over those that have it.
 Quality mean_quality(const std::vector<Quality>& all);
 
 /// A count, or a mean of counts: without a fraction where it is whole.

@@ -1,4 +1,4 @@
-// Names and segments that are read from the picture, in place of the simulator's (docs/protocol.md, section 3).
+// Reads names and segments from the picture, in place of the simulator's (docs/protocol.md, section 3).
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -25,9 +25,9 @@ struct Reading {
   bool none() const { return names == simulator && segments == simulator; }
   /// The id of the plugin that reads names; "" for none.
   std::string plugin() const;
-  /// Whether the library of what reads (seeing_library) takes part.
+  /// Whether the library that reads pictures (seeing_library) takes part.
   bool needs_library() const { return !none() && (plugin().empty() || segments == difference); }
-  /// What a row's name ends with: "+names=read+segments=difference", without what is the simulator's.
+  /// The end of a row's name: "+names=read+segments=difference", without parts that are the simulator's.
   std::string suffix() const;
 };
 bool operator==(const Reading& a, const Reading& b);
@@ -37,8 +37,8 @@ std::string read_segments(const JsonReader& reader);
 /// "read", "read_balanced", "read_drawn", "read_robust": the shipped readers.
 const std::vector<std::string>& names_read();
 
-/// The shipped reader's file for that environment; "" where its names are not read by a file. @throws InputError where
-/// the environment has none.
+/// The shipped reader's file for that environment; "" where no file reads the names. @throws InputError where the
+/// environment has none.
 std::filesystem::path reader_file(const std::string& environment, const Reading& reading);
 
 /// Why the scenario's pictures cannot be read like that, in a few words; "" where they can.
@@ -47,7 +47,7 @@ std::string why_not_read(const Scenario& scenario, const Reading& reading);
 /// A policy's observation, with ids and names as they were read.
 using ReadPicture = std::function<Observation(const Observation& seen, const Scene& scene)>;
 
-/// What a policy is given in place of what it would see of a scene, once the axis has changed it: null where nothing is
+/// What a policy is given in place of what it would see of a scene, after the axis's changes. Null where nothing is
 /// read. `perceiver` is the plugin's. The scene tells in which order segments are numbered, and nothing else. @throws
 /// InputError where the library or the file is not there.
 ReadPicture reading_of(const Scenario& scenario, const Reading& reading,
@@ -60,7 +60,7 @@ Observation marked(const Observation& seen, const std::vector<std::uint8_t>& ids
 /// The file that finds segments and reads names; opened where a cell asks for either.
 inline constexpr const char* seeing_library = "liblgabench_seeing.so";
 
-/// What that library has.
+/// The functions of that library.
 struct SeeingLibrary {
   /// `ids` as segments by difference from the `empty` place, in the light that `balances` takes out or as it is.
   Observation (*segments)(Observation seen, const Observation& empty, bool balances, RandomStream random);

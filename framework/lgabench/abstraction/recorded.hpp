@@ -11,19 +11,19 @@
 
 namespace lgabench {
 
-/// Whose answers there are: the data directory's answers/, without their ending.
+/// The sources of recorded answers: the files of the data directory's answers/, without their ending.
 std::vector<std::string> recorded_sources();
 
-/// Whose answers `answers` means for the scenario: one of recorded_sources(), or for "recorded" the scenario's own, to
-/// be edited by people or used as they are.
+/// The source that `answers` means for the scenario: one of recorded_sources(), or for "recorded" the scenario's own,
+/// which differs for people to edit and for direct use.
 std::string recorded_source(const Scenario& scenario, const std::string& answers, bool to_edit = false);
 
-/// What one command's questions were answered.
+/// The answers to one command's questions.
 struct RecordedAnswer {
   std::string space, scenario, asked_as;     // scenario: "" where the answers are those of the words alone
   FeatureSet target;                         // the candidates answered yes
   std::map<std::string, FeatureSet> second;  // likewise, by role
-  std::optional<Meaning> structured;         // what was said of the command in one answer
+  std::optional<Meaning> structured;         // the command's meaning, given in one answer
   std::vector<Hypothesis> hypotheses;        // which unstated preferences it may have; mostly none were asked for
 };
 /// A file of recorded answers: one that is shipped, or that somebody wrote (docs/formats: recorded answers).

@@ -1,4 +1,4 @@
-// What a Selection keeps in test scenes, without a policy: the table of language models.
+// Scores what a Selection keeps in test scenes, without a policy: the table of language models.
 #pragma once
 #include <cstdint>
 #include <set>
@@ -13,7 +13,7 @@ namespace lgabench {
 /// Sums over scenes, and over commands where they are added.
 struct SceneScore {
   int commands = 0, exact_sets = 0;            // no pair of the space wrong but those that the scenario calls undecided
-  int scenes = 0, exact_scenes = 0;            // the target's instances kept are exactly those that are meant
+  int scenes = 0, exact_scenes = 0;            // the instances kept as the target are exactly those that are meant
   int kept = 0, meant = 0, right = 0;          // instances of all scenes; right: kept and meant
   std::set<std::string> wrongly_kept, missed;  // object types, in words for a reader
 };
@@ -25,7 +25,7 @@ SceneScore& operator+=(SceneScore& all, const SceneScore& more);
 SceneScore score(const Scenario& scenario, int command, const Selection& selection, const std::string& layout,
                  std::uint64_t scene_seed, int scenes);
 
-/// Adds who answered to those who did, in the order in which each answered last.
+/// Adds a name to those who answered, in the order in which each answered last.
 void add_source(const std::string& source, std::vector<std::string>& all);
 
 /// Whether one of the hypotheses is the command's truth: the same rule, and no pair of the space wrong but those that

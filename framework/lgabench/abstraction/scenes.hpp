@@ -14,8 +14,8 @@
 
 namespace lgabench {
 
-/// The scenario's environment on that engine. Calls out of their order (Environment) @throws Error, and may be made
-/// right. @throws InputError for an environment that is not known.
+/// The scenario's environment on that engine. Calls out of order (see Environment) @throw Error, after which calls in
+/// order work. @throws InputError for an environment that is not known.
 std::unique_ptr<Environment> make_environment(const Scenario& scenario, std::unique_ptr<PhysicsWorld> world);
 
 /// Scene `index` to demonstrate. Where the scenario leaves it to the method, targets are drawn from `selections`, one a

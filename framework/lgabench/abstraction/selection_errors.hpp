@@ -1,4 +1,4 @@
-// Errors that are made on purpose in what was selected: how much an error of an abstraction costs.
+// Makes errors in Selections on purpose, to measure how much an error of an abstraction costs.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -15,7 +15,7 @@ struct SelectionErrors {
   double missing = 0, added = 0;
 
   bool none() const { return missing == 0 && added == 0; }
-  /// What a row's name ends with: "+added=0.2+missing=0.1", "" where nothing errs.
+  /// The end of a row's name: "+added=0.2+missing=0.1", "" without errors.
   std::string suffix() const;
 };
 bool operator==(const SelectionErrors& a, const SelectionErrors& b);
@@ -28,10 +28,10 @@ SelectionErrors read_selection_errors(const JsonReader& reader);
 /// Why no errors can be made in what is selected for the scenario's commands, in a few words; "" where they can.
 std::string why_no_selection_errors(const Scenario& scenario);
 
-/// What `selected` for the scenario's command number `command` becomes. Each feature has one number in [0, 1), from a
-/// stream of (utterance, training seed): it errs where that lies below the probability, so that more errors hold all
-/// that fewer make, for every method alike. `never_meant`: an object type that no set with errors holds, as the place
-/// to bring things to; "" for none.
+/// Returns `selected`, of the scenario's command number `command`, with errors. Each feature has one number in [0, 1),
+/// from a stream of (utterance, training seed), and errs if that lies below the probability. A higher probability thus
+/// keeps all errors of a lower one, alike for every method. `never_meant`: an object type that no set with errors
+/// holds, as the place to bring things to; "" for none.
 Selection with_errors(Selection selected, const Scenario& scenario, int command, const SelectionErrors& errors,
                       std::uint64_t training_seed, const std::string& never_meant);
 /// Likewise, with the numbers of that stream.

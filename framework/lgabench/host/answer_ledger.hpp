@@ -1,4 +1,4 @@
-// What a method asked during one call, and what that says of the Selection it returns.
+// Records what a method asked during one call, which tells the source of the Selection that it returns.
 #pragma once
 #include <exception>
 #include <optional>
@@ -14,18 +14,18 @@ class AnswerLedger {
  public:
   /// Holds references.
   AnswerLedger(const FeatureSpace& space, Services& services);
-  /// With an answer that was given before the call: what the method revises. Its cost is account()'s too.
+  /// Begins with an answer from before the call: the Selection that the method revises. account() adds its cost too.
   AnswerLedger(const FeatureSpace& space, Services& services, const Selection& earlier);
 
-  /// Answers on the channel; false for a frame that is no question. What an answer throws is kept, and told to the
-  /// method, which may bear it. @throws InputError for a question that is malformed.
+  /// Answers on the channel; false for a frame that is no question. An exception of an answer is kept, and told to the
+  /// method, which may go on. @throws InputError for a question that is malformed.
   bool answer(const Frame& frame, Channel& channel);
   /// Throws again what the last answer threw, if one did: then that is why the call failed.
   void rethrow() const;
 
-  /// The Selection with provenance, source, wording and cost: those of the answers that it equals, the last ones first;
-  /// of the last ones, ", edited by the method", where it equals none. Nobody asked: rule, or none where it is empty.
-  /// Where a person was shown objects, it is a simulated edit.
+  /// The Selection with provenance, source, wording and cost. These are those of the last answers that it equals; if it
+  /// equals none, those of the last answers with ", edited by the method". If nobody was asked, the provenance is rule,
+  /// or none for an empty Selection. If a person was shown objects, it is a simulated edit.
   Selection account(Selection selection) const;
 
  private:

@@ -16,14 +16,15 @@ struct Reach {
   std::vector<std::filesystem::path> unread{};  // as `hidden`, but that they are there, and their names, may be seen
 };
 
-/// Prepared before a process is forked, applied in it. Without the kernel's support a part is left out.
+/// Limits that are prepared before a process is forked, and applied in it. A part that the kernel does not support is
+/// left out.
 class Confinement {
  public:
   /// Paths that are not there are passed over. @throws EngineError where the kernel refuses a rule.
   explicit Confinement(const Reach& reach);
-  /// In the child, before exec. From then on it and all that it starts see what `reach` says, signal and trace nobody
-  /// else, and without `network` connect to nobody; NotedCalls is told on the socket, if there is one. False where the
-  /// kernel refused.
+  /// Call it in the child, before exec. From then on the child and all that it starts see only what `reach` says,
+  /// signal and trace no other process, and without `network` connect to nobody; NotedCalls is told on the socket, if
+  /// there is one. False where the kernel refused.
   bool apply(int socket = -1) const;
 
  private:

@@ -12,7 +12,7 @@
 
 namespace lgabench {
 
-/// Processes that a process started, and, if it is a subreaper, those below it whose own parent is gone.
+/// Processes that a process started and, if the process is a subreaper, its descendants whose own parent is gone.
 std::vector<pid_t> children_of(pid_t parent);
 
 /// What is started, and with what.
@@ -41,15 +41,15 @@ class HostProcess {
 
   /// Our end; to be taken once.
   Descriptor take_socket() { return std::move(socket_); }
-  /// Returns when the socket `fd` has one of the poll() events, or after a moment; passes on what the host prints.
-  /// It is gone where it has more than it may: of memory @throws std::bad_alloc, of files in its directory, processes
-  /// and threads MethodGone.
+  /// Returns when the socket `fd` has one of the poll() events, or after a moment; passes on what the process prints. A
+  /// process over its limits is ended: @throws std::bad_alloc for memory, MethodGone for files in its directory,
+  /// processes and threads.
   void wait(int fd, short events);
   /// Names of the system calls that it was refused so far.
   const std::vector<std::string>& refused_calls() const { return calls_.refused(); }
   /// Processes that it started, directly or not, and that are still there: "NUMBER NAME" each.
   std::vector<std::string> started() const;
-  /// The connection is at its end. @throws MethodGone that says how the process ended, always.
+  /// Call it when the connection has ended. @throws MethodGone that says how the process ended, always.
   [[noreturn]] void explain();
 
  private:

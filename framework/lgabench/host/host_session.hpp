@@ -45,7 +45,7 @@ class HostSession {
   /// it does not know breaks the protocol. @throws MethodError, std::bad_alloc, PluginError as the reply says.
   Frame call(const Json& request, const char* reply, const Meanwhile& meanwhile = {}, const Descriptor* file = nullptr);
 
-  /// What a reply holds, or MethodGone.
+  /// Returns what a reply holds. @throws MethodGone
   template <class Call>
   auto read(Call&& call) -> decltype(call()) {
     return guarded_by_protocol([&] { return protocol::read_or_malformed(call); });

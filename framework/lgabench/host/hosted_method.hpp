@@ -12,10 +12,10 @@
 
 namespace lgabench {
 
-/// The most that is kept of a policy.
+/// The largest policy that is kept.
 constexpr std::size_t most_saved_bytes = 64 << 20;
 
-/// A method whose code runs in a process, or several, that whoever made it ends.
+/// A method whose code runs in one process or several, which the method's maker ends.
 class MethodInProcesses : public Method {
  public:
   /// What the method left in Services::files, as names and bytes: 64 MiB at most. What is left out is said in the log.
@@ -47,7 +47,7 @@ class HostedMethod : public MethodInProcesses {
 
   /// Names of the system calls that its process was refused so far.
   std::vector<std::string> refused_calls() const;
-  /// For check-plugin: destroys one of them; after both, needs() makes a new method in the same process.
+  /// For check-plugin: destroys the policy or the method. After both, needs() makes a new method in the same process.
   void drop_method();
   void drop_policy();
   /// Likewise: what the process of a plugin holds beyond what it held before the plugin was loaded.

@@ -1,5 +1,5 @@
-// What frames and shared memory hold, written and read: the same code at both ends (docs/formats/method-protocol.md).
-// What reads throws InputError for a value of another kind; whoever reads knows whose fault that is.
+// Writes and reads what frames and shared memory hold, by the same code at both ends (docs/formats/method-protocol.md).
+// A reader throws InputError for a value of another kind; its caller knows whose fault that is.
 #pragma once
 #include <string>
 #include <utility>
@@ -27,7 +27,7 @@ Command read_command(const JsonReader& reader);
 Json to_json(const FeatureSpace& space);
 FeatureSpace read_space(const JsonReader& reader);
 
-/// As a method is told of one: with provenance, source and wording, and without cost.
+/// A Selection as a method is told of it: with provenance, source and wording, and without cost.
 Json told(const Selection& selection);
 /// Reads that, or what a method returns: {"target", a second set?}. Names as they are.
 Selection read_selection(const JsonReader& reader);
@@ -83,10 +83,11 @@ Layout read_layout(const JsonReader& hello);
 /// The first of them alone.
 PictureSize read_picture_size(const JsonReader& hello);
 
-/// A file in memory, mapped. The last of its maps and descriptors frees it.
+/// A file in memory, mapped. It is freed with the last of its maps and descriptors.
 class SharedMemory {
  public:
-  /// Makes one of this size, filled with 0, writable here; no one who is sent it can write to it or change its size.
+  /// Makes a file of this size, filled with 0. It is writable here; a receiver can neither write to it nor change its
+  /// size.
   explicit SharedMemory(std::size_t size);
   /// Maps one that was sent, to be read. @throws InputError where it is smaller than `size`.
   SharedMemory(const Descriptor& file, std::size_t size);

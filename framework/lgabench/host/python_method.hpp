@@ -6,7 +6,7 @@
 
 namespace lgabench {
 
-/// The word names a plugin in Python: its part before the first '+' holds ".py:".
+/// Whether the word names a plugin in Python: its part before the first '+' holds ".py:".
 bool is_python_method(const std::string& word);
 
 /// Asks the interpreter's own parser what the file says of the class (python/lgabench_method/describe.py).

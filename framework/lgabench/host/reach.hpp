@@ -1,4 +1,4 @@
-// Where a process reads that runs a method, or reads its file.
+// Where a process that runs a method, or reads a method's file, may read.
 #pragma once
 #include <filesystem>
 
@@ -7,7 +7,8 @@
 
 namespace lgabench {
 
-/// What a library or an interpreter starts with: the system's, lgabench's own libraries, and nothing of a person.
+/// The files that a library or an interpreter starts with: the system's and lgabench's own libraries, and nothing of a
+/// person.
 Reach system_reach();
 
 /// lgabench_method, which comes with lgabench's data: no installed interpreter has it.

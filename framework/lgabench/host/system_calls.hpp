@@ -11,9 +11,10 @@ namespace lgabench {
 
 bool has_seccomp();
 
-/// In the process itself, before exec. From then on it and all that it starts make the calls of the list alone. What is
-/// newer than the list answers ENOSYS, so that a C library falls back; anything else EPERM. `network`: IP sockets too.
-/// Sends a byte on `socket`, unless that is -1, with a descriptor for NotedCalls where the kernel has one. False
+/// Call it in the process itself, before exec. From then on the process and all that it starts can make the calls of
+/// the list alone. A call newer than the list gets ENOSYS, so that a C library falls back; any other gets EPERM.
+/// `network`: IP sockets too. Sends a byte on `socket`, unless that is -1, with a descriptor for NotedCalls where the
+/// kernel has one. False
 /// where it refused.
 bool allow_system_calls(bool network, int socket);
 

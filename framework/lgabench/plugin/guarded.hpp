@@ -35,10 +35,10 @@ struct FlushDenormalsAgain {
   }
 };
 
-/// Returns call(). Whatever it throws becomes a Fault that reads "plugin ID: ..."; only an InputError stays one, since
-/// then an option or a file is to be corrected, not the plugin, and a method's std::bad_alloc stays one: how much
-/// memory there is must not decide an episode. Use the default for methods and their policies (so a method cannot pass
-/// its failure off as the engine's), guarded<EngineError> for engines.
+/// Returns call(). An exception becomes a Fault that reads "plugin ID: ...". Only two stay as they are: an InputError,
+/// since an option or a file is to be corrected, not the plugin; and a method's std::bad_alloc, since the machine's
+/// memory must not decide an episode. Use the default for methods and their policies (so a method cannot pass its
+/// failure off as the engine's), guarded<EngineError> for engines.
 template <class Fault = MethodError, class Call>
 decltype(auto) guarded(std::string_view plugin_id, Call&& call) {
   const FlushDenormalsAgain on_every_way_out;

@@ -15,7 +15,7 @@ namespace lgabench {
 
 namespace fs = std::filesystem;
 
-/// What a plugin's descriptor says, checked: it fits this program as far as bytes can tell.
+/// What a plugin's descriptor says. It was checked: the plugin fits this program as far as bytes can tell.
 struct PluginInfo {
   fs::path file;
   std::string kind, id, version, summary, fingerprint;
@@ -31,7 +31,7 @@ struct PluginInfo {
   Json axis{};                 // of a perturbation, as axis_json() of core/perturbations.hpp; else null
 };
 
-/// Every member, under its name.
+/// The JSON of every member, under its name.
 Json to_json(const PluginInfo& plugin);
 
 /// Reads the file's bytes and runs nothing of it. @throws PluginError naming the file, the cause and, for a mismatch,
@@ -78,20 +78,19 @@ std::unique_ptr<Perceiver> load_perceiver(const PluginInfo& plugin);
 /// Adds the axes of its perturbations (add_plugin_axis). One whose id is taken is refused.
 void add_axes(Catalogue& catalogue);
 
-/// An option's value as written on a command line: a number, or true or false, where the whole word is one; else a
-/// text.
+/// Reads an option's value from a command line: a number, or true or false, if the whole word is one; else a text.
 Json option_value(const std::string& word);
-/// The other way: the value as a command line and a row's name write it.
+/// Writes an option's value as a command line and a row's name have it.
 std::string option_text(const Json& value);
 /// What "min" and "max" of an option allow: "from 0 to 1", "of 1 or more", "of 1 or less", or "".
 std::string range_text(const Json& option);
 /// "ID+OPTION=VALUE+OPTION=VALUE", as rows are written and named -> "ID", "OPTION=VALUE", "OPTION=VALUE". Behind the
 /// first '+' another one separates only at the end and before a letter, so that a value may be 1e+30.
 std::vector<std::string> row_words(const std::string& row);
-/// The method's id of such a row: also of one that selects alone.
+/// The method's id in such a row, also in one whose method selects alone.
 std::string row_id(const std::string& row);
 
-/// What a row begins with whose plugin selects alone, while the shipped policy learns and acts: "selected_by:ROW".
+/// The beginning of a row whose plugin selects alone, while the shipped policy learns and acts: "selected_by:ROW".
 constexpr const char* selected_by = "selected_by:";
 bool selects_alone(const std::string& row);
 /// ROW of such a row; any other as it is.
@@ -102,7 +101,7 @@ std::string without_selected_by(const std::string& row);
 /// @throws InputError for an unknown option, a value of another type than the default's or not among its values, and
 /// for one whose needs of other options are not met.
 Json resolve_options(const PluginInfo& plugin, const Json& overrides);
-/// Likewise of an object that need not be all that is given: its options one by one, without their needs.
+/// Checks options one by one, without their needs, since the object need not be all that is given.
 Json check_options(const PluginInfo& plugin, const JsonReader& given);
 
 }  // namespace lgabench
