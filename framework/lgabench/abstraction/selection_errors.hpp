@@ -10,7 +10,7 @@
 
 namespace lgabench {
 
-/// With which probability each true feature is missing, and each wrong one is added: 0 to 1.
+/// The probability that a true feature is missing, and that a wrong one is added: 0 to 1.
 struct SelectionErrors {
   double missing = 0, added = 0;
 

@@ -32,10 +32,11 @@ CheckReport check_perturbation(HostJob job, const CheckPhase& phase);
 /// Lets the perceiver read scenes, forwards and backwards, likewise.
 CheckReport check_perceiver(HostJob job, const CheckPhase& phase);
 
-/// What of `now`, threads or processes, is still there: they are given half a second to end.
+/// Which of the threads or processes `now` are still there after half a second.
 std::vector<std::string> left_behind(const std::function<std::vector<std::string>()>& now);
 
-/// Adds what is left behind: `now` says what a process holds beyond what it held before the plugin came.
+/// Adds a finding on what the plugin leaves behind: `now` is what the process holds beyond what it held before the
+/// plugin came.
 void judge_leftovers(CheckReport& report, const std::function<ProcessState()>& now);
 
 }  // namespace lgabench

@@ -10,7 +10,7 @@
 
 namespace lgabench {
 
-/// What the label of each step of each demonstration leads to.
+/// What the label of each step leads to, for each demonstration.
 using Outcomes = std::vector<std::vector<StepResult>>;
 
 /// One demonstration a scene. Its first step is clean. With needs.noisy_per_clean = n > 0, recovery (docs/protocol.md,

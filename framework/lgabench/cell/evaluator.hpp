@@ -14,7 +14,7 @@
 
 namespace lgabench {
 
-/// What an actor does, and what it says of the input that made it do so.
+/// An actor's action, and what the actor says of the input that led to it.
 struct Move {
   Move(const Action& does, std::optional<bool> seen = std::nullopt) : action(does), input_seen(seen) {}
   Action action;
@@ -28,7 +28,7 @@ using Actor = std::function<Move(const Environment& environment, const Scene& sc
 /// throws, an InputError included, is a MethodError. Holds references. `instructions`: one a command of the scenario.
 Actor policy_actor(Policy& policy, const std::vector<Instruction>& instructions, const std::string& plugin_id);
 
-/// Likewise, told what `told` says of the scene.
+/// Likewise, with the instruction that `told` gives for the scene.
 Actor policy_actor(Policy& policy, std::function<Instruction(const Scene&)> told, const std::string& plugin_id);
 
 /// One episode a scene, in order; `done(n)` after each. A MethodError fails its episode as method_error. @throws

@@ -1,4 +1,4 @@
-// A method that selects alone: another one, in a process of its own, learns and acts with what it selected.
+// A method that selects alone. Another method, in a process of its own, learns and acts with what it selected.
 #pragma once
 #include <functional>
 #include <memory>

@@ -1,4 +1,4 @@
-// What is known of a person's rule, exactly: a grammar's rules, weighed by what the person took and said.
+// The exact belief about a person's rule: a grammar's rules, weighed by what the person took and said.
 #pragma once
 #include <optional>
 #include <vector>

@@ -1,5 +1,5 @@
-// Whose answers a run uses: recorded ones, files that people bring along, or a model that is asked now. It keeps files
-// and replies beside its cells, named by their SHA-256, so that it can be checked anywhere.
+// The answers that a run uses: recorded ones, files that people bring along, or those of a model that is asked now. A
+// run keeps files and replies beside its cells, named by their SHA-256, so that it can be checked anywhere.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -34,7 +34,8 @@ void keep_answers(const std::vector<AnswerFile>& files, const std::filesystem::p
 /// scenarios: names the first that is missing, and the command line that asks it.
 AnswerFile check_cassette(const std::filesystem::path& cassette, const std::vector<std::string>& scenarios);
 
-/// The replies that a run with a live model keeps, if it does; of several, left by one that was killed, the longest.
+/// The file of replies that a run with a live model keeps, if any. Of several that a killed run left, it is the
+/// longest.
 std::optional<AnswerFile> kept_replies(const std::filesystem::path& run);
 /// Whether every line of one file stands in the other. @throws InputError where one cannot be read.
 bool holds_lines(const std::filesystem::path& all, const std::filesystem::path& some);

@@ -1,4 +1,4 @@
-// What a cell costs in seconds: as measured once, corrected by what this run's cells take.
+// A cell's expected seconds: as measured once, corrected by what this run's cells take.
 #pragma once
 #include <map>
 #include <string>
@@ -10,7 +10,7 @@ namespace lgabench {
 /// Seconds of a cell by what was measured once (the data directory's measured/costs.json): of its method and network
 /// for each demonstration and pass over it, and of each demonstration and episode. @throws InputError
 double usual_seconds(const Cell& cell);
-/// The method that a cell's is taken for, as it was not measured; "" where it was.
+/// The measured method that stands in for a cell's unmeasured one; "" if the cell's was measured.
 std::string measured_on(const Cell& cell);
 
 /// Learns, row by row, how much longer or shorter cells take here than they usually do.
@@ -20,7 +20,8 @@ class Costs {
   void learn(const Cell& cell, double seconds);
   /// Whether a cell of that row was learnt.
   bool knows(const std::string& row) const { return rows_.count(row) != 0; }
-  /// Seconds that the cell is expected to take: as much beside the usual as its row's others took, else all others.
+  /// Seconds that the cell is expected to take: the usual ones, corrected as its row's other cells were, else as all
+  /// others.
   double expected_seconds(const Cell& cell) const { return expected_seconds(cell.method.name, usual_seconds(cell)); }
   /// Likewise of a cell of `row` that usually takes `usual` seconds.
   double expected_seconds(const std::string& row, double usual) const;

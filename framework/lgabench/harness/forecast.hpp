@@ -1,4 +1,4 @@
-// What a run has still to do, before it does it.
+// Forecasts what a run has still to do.
 #pragma once
 #include <optional>
 #include <string>

@@ -15,7 +15,7 @@
 
 namespace lgabench {
 
-/// Whether a method that did not come with the installation is told the truth, as finding causes of failures takes.
+/// Whether a method that did not come with the installation is told the truth, which finding causes of failures needs.
 enum class Strangers {
   told_nothing,     // on the leaderboard, and where cells are checked; cells are then played in an order that is drawn
   told_afterwards,  // not by run_suite(), but by who calls it, once the run's last cell is scored (cli/causes.hpp)
@@ -50,7 +50,7 @@ struct FailedCell {
   std::filesystem::path log;
 };
 
-/// Where the time of the cells that were computed went.
+/// How the computed cells spent their time.
 struct TimeSpent {
   std::map<std::string, double> phase_s;  // as in timing.json, without total_s
   double workers_s = 0;                   // from start to end of each worker, added up

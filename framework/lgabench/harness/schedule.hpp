@@ -18,8 +18,8 @@ struct Shard {
 /// Reads "i/n". @throws InputError for anything else, or an i that is not from 1 to n.
 Shard read_shard(const std::string& text);
 
-/// The shard's cells. Cells are dealt out like cards, those of one row and number of demonstrations one after the
-/// other: every shard gets its share of each kind, whatever a kind costs. A function of the cells alone.
+/// The shard's cells. Cells are dealt out in turn, those of one row and number of demonstrations one after the other:
+/// every shard gets its share of each kind, whatever a kind costs. A function of the cells alone.
 std::vector<const Cell*> cells_of(const std::vector<Cell>& cells, Shard shard);
 
 /// Gives out cells, those that are expected to take longest first, so that no worker ends long after the others. It

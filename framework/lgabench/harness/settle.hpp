@@ -1,4 +1,4 @@
-// What a worker left: a cell's result, or why there is none.
+// Settles what a worker left: a cell's result, or why there is none.
 #pragma once
 #include <filesystem>
 #include <string>

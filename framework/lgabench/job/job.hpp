@@ -1,5 +1,5 @@
-// What `lgabench` tells the workers that it starts, and what they tell it: each form is written and read here alone. A
-// job is a JSON object on a worker's standard input.
+// The messages between `lgabench` and the workers that it starts. Each form is written and read here alone. A job is a
+// JSON object on a worker's standard input.
 #pragma once
 #include <filesystem>
 #include <optional>

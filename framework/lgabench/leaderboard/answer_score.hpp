@@ -1,4 +1,4 @@
-// What a row's answers keep without a policy: the second score of an entry of answers.
+// Scores what a row's answers keep without a policy: the second score of an entry of answers.
 #pragma once
 #include <lgabench/leaderboard/setting.hpp>
 

@@ -1,4 +1,4 @@
-// What counts in a table whose scenes are perturbed: areas under the curves of success against the levels of axes.
+// The score of a table whose scenes are perturbed: areas under the curves of success against the levels of axes.
 #pragma once
 #include <map>
 #include <optional>
@@ -19,10 +19,12 @@ std::vector<std::string> axes_of(const Setting& setting);
 /// The trapezoids' shares of one axis in a scenario, the control (its first arm) included; empty where it lacks the
 /// axis.
 ArmWeights weights_of(const Setting::Scenario& scenario, const std::string& axis);
-/// Those of all axes of a scenario, each alike; empty where it is not perturbed: its arms count alike.
+/// The shares of all axes of a scenario, weighted alike. Empty for a scenario that is not perturbed, whose arms count
+/// alike.
 ArmWeights weights_of(const Setting::Scenario& scenario);
 
-/// What an entry keeps of its control along one axis, over the scenarios that have it; none where it had nothing there.
+/// The share of its control's success that an entry keeps along one axis, over the scenarios that have it; none if the
+/// control had no success.
 std::optional<double> relative_area(const Entry& entry, const std::string& axis);
 /// Its success in the control, over all scenarios.
 double control_success(const Entry& entry);

@@ -1,4 +1,4 @@
-// An entry's cells, computed again by this installation: are its outcomes what its method does?
+// Computes an entry's cells again in this installation, to check that its outcomes are what its method does.
 #pragma once
 #include <optional>
 #include <string>

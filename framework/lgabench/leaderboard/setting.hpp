@@ -10,7 +10,7 @@
 
 namespace lgabench::leaderboard {
 
-/// Which of a table's cells, whoever plays it.
+/// The place of a cell in its table, for any row.
 struct Place {
   std::string scenario, layout;
   int demonstrations = 0;

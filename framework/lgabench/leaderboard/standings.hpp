@@ -1,4 +1,4 @@
-// Who stands where in one table: scores, intervals and ranks, from the outcomes alone.
+// The standings of one table: scores, intervals and ranks, from the outcomes alone.
 #pragma once
 #include <map>
 #include <optional>

@@ -1,4 +1,4 @@
-// Tracks: which presets of the board ask for what, in tracks.json of the board.
+// The board's tracks: what each preset asks for, by the board's tracks.json.
 #pragma once
 #include <filesystem>
 #include <map>

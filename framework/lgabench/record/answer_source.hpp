@@ -1,4 +1,4 @@
-// Where a run's answers come from, as a value and as the word that the command line, run.json, cells and entries have.
+// The source of a run's answers, as a value and as the word that the command line, run.json, cells and entries have.
 #pragma once
 #include <string>
 #include <variant>
@@ -32,7 +32,7 @@ struct NoAnswers {};
 using AnswerSource = std::variant<RecordedAnswers, CassetteAnswers, FileAnswers, LiveAnswers, NoAnswers>;
 
 std::string to_string(const AnswerSource& source);
-/// Every word is one: what is none of the others names recorded answers.
+/// Reads a word. Every word is valid: one that is none of the others names recorded answers.
 AnswerSource read_answer_source(const std::string& word);
 /// The ending of the file that is kept with a run or a board for it, SHA256 before it: ".jsonl" of a cassette, which a
 /// server's replies have too; "" where there is none.

@@ -64,7 +64,7 @@ struct Cell {
   std::string scenario_id() const { return scenario->at("id"); }
   /// Whether an arm of its scenario has a perturbation.
   bool perturbs() const;
-  /// Ids of the axes of plugins that they have.
+  /// Ids of the plugins' axes that its arms have.
   std::vector<std::string> plugin_axes() const;
   /// Whether its results depend on the perturbation axes.
   bool needs_axes() const { return train_on || perturbs(); }

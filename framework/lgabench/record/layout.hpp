@@ -1,4 +1,4 @@
-// What a run's directory holds, by name.
+// Names of what a run's directory holds.
 #pragma once
 #include <array>
 #include <string>
@@ -24,7 +24,7 @@ inline constexpr const char *configuration = "cell.json", *selections = "selecti
 /// All but the status.
 inline constexpr std::array cell_files{cell_file::configuration, cell_file::selections, cell_file::training,
                                        cell_file::episodes,      cell_file::timing,     cell_file::log};
-/// Those that hold no clock: the cell's results, bit by bit, of the configuration.
+/// The files without times: the cell's results, which its configuration decides bit by bit.
 inline constexpr std::array result_files{cell_file::selections, cell_file::training, cell_file::episodes};
 
 /// Names of what `report` writes beside run.json.
@@ -33,7 +33,7 @@ inline constexpr const char *summary = "summary.json", *summary_table = "summary
                             *episodes = "episodes.csv", *markdown = "report.md", *page = "report.html",
                             *figures = "figures", *tables = "tables";
 }  // namespace report_file
-/// Those that any document has, a study's among them.
+/// Names of files that any document has, a study's too.
 inline constexpr std::array document_entries{report_file::markdown, report_file::page, report_file::figures,
                                              report_file::tables};
 /// What `run` and `report` write into a run's directory, and `run --fresh` deletes.

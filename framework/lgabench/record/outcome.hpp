@@ -28,7 +28,7 @@ std::optional<Outcome> read_outcome(char letter, char attribution, const std::ve
 char entry_letter(const Episode& episode, const std::vector<std::string>& words);
 /// What it says: no attribution where it is small. None for a letter that says nothing.
 std::optional<Outcome> read_entry_letter(char letter, const std::vector<std::string>& words);
-/// Of a cell that its method failed, in place of each episode's.
+/// The letter of a cell that its method failed, in place of each episode's.
 constexpr char failed_cell_letter = '!';
 
 /// Whether a letter, of the one kind or the other, says success; how many of them do.

@@ -16,7 +16,7 @@ TestScenes read_test_scenes(const JsonReader& reader);
 
 /// The number of the set of scenes that a training seed plays: its own, or 0, everybody's.
 std::uint64_t scene_set(TestScenes scenes, std::uint64_t training_seed);
-/// Those of all the training seeds.
+/// The numbers for all the training seeds.
 std::vector<std::uint64_t> scene_sets(TestScenes scenes, const std::vector<std::uint64_t>& training_seeds);
 
 }  // namespace lgabench

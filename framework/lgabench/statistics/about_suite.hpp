@@ -31,8 +31,9 @@ struct AboutSuite {
 /// The file of an installed suite; empty where there is none of that name.
 fs::path installed_suite(const std::string& id);
 
-/// That of an installed suite, unless its run says otherwise: `own` is the run's, null where it has none. Of a suite
-/// that is neither, the title alone, which is its id. @throws InputError for an `own` that is not as docs/formats says.
+/// What is said about the suite of a run: `own`, if the run has it (else null), or what the installed suite says. For
+/// any other suite it is the title alone, which is its id. @throws InputError for an `own` that is not as docs/formats
+/// says.
 AboutSuite about_suite(const std::string& id, const Json& own = nullptr);
 
 }  // namespace lgabench::report

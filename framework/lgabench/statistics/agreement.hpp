@@ -1,4 +1,4 @@
-// Do cells that were computed again agree with what was recorded?
+// Compares cells that were computed again with the recorded ones.
 #pragma once
 #include <string>
 #include <utility>
@@ -10,7 +10,7 @@
 namespace lgabench::report {
 
 enum class Agreement {
-  identical,       // every byte of what holds no clock
+  identical,       // every byte of the files without times
   same_outcomes,   // every episode succeeded or failed as recorded; actions or training differ
   other_outcomes,  // some episodes ended differently: whether they are few enough, the verdict over all cells says
   differs          // the same bytes are owed, or nothing can be compared: another Selection, scene or arm
@@ -26,13 +26,12 @@ struct CellAgreement {
 };
 
 /// Compares the directories of two finished cells. `excused`: build, processor or data are not those of the record.
-/// Without that the same bytes are owed, and anything else differs. What was selected is not a matter of numerics: it
-/// differs, excused or not. Attributions are compared where both have some.
+/// Otherwise the cells must be bit-identical. Selections do not depend on numerics: unequal ones differ, excused or
+/// not. Attributions are compared where both have some.
 /// @throws InputError for files that are not as docs/formats says.
 CellAgreement compare_cells(const fs::path& recorded, const fs::path& recomputed, bool excused);
 
-/// The episodes of several cells put together: three that changed in each of two cells may be chance in each and are
-/// none in both.
+/// The episodes of several cells, pooled: three changed episodes may be chance in each of two cells, and not in both.
 struct PooledAgreement {
   std::string row;  // "" over all rows
   int cells = 0, only_recorded = 0, only_recomputed = 0;
@@ -41,10 +40,10 @@ struct PooledAgreement {
   bool differs() const { return p_holm <= alpha; }
 };
 
-/// Share of episodes that may end otherwise where the same bytes are not owed, as on another processor.
+/// Share of episodes that may end otherwise where cells need not be bit-identical, as on another processor.
 constexpr double most_flips = .01;
 
-/// What cells that were computed again come to, all together.
+/// The verdict on all cells that were computed again.
 enum class Reproduction {
   identical,  // every cell, to the bit
   agrees,     // at most most_flips of the episodes ended differently, no more of them one way than chance allows

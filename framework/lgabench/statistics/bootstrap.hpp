@@ -1,4 +1,4 @@
-// How far chance may have moved a mean over scenarios: their test scenes and training seeds drawn again.
+// How far chance may have moved a mean over scenarios, by drawing test scenes and training seeds again.
 #pragma once
 #include <optional>
 #include <string>
@@ -49,8 +49,8 @@ int distinct_scenes(const Samples& scenarios);
 // them. Within each scenario both are drawn with replacement: crossed where all policies share their scenes (Owen 2007:
 // a resample's scenes are the same for each of its policies), else nested, scenes within each policy drawn; there one
 // policy fewer than there are, as three drawn of three show two thirds of what differs between them (Rao and Wu 1988).
-// One policy a scenario: its scenes alone are drawn, and the result holds for its training seed. Every resample of a
-// row draws as well from two imagined scenes, one to either side, as Bonett and Price's interval has them: outcomes
+// With one policy a scenario, only its scenes are drawn, and the result holds for its training seed. Every resample of
+// a row draws as well from two imagined scenes, one to either side, as Bonett and Price's interval has them: outcomes
 // that all agree do not make certain. Several policies that share 20 scenes are thus 20 scenes, not 60 episodes.
 // report_bootstrap_test.cpp measures the type-I error. `name` seeds the random stream: the same arguments, the same
 // bits.
@@ -63,8 +63,8 @@ Interval success_interval(const Samples& scenarios, std::string_view name);
 /// and McNemar's p.
 Change paired_change(const Samples& scenarios, std::string_view name, int resamples = 10000);
 
-/// The same resamples for many rows that played the same scenes, so that any two of them are paired: the tests above,
-/// of every pair, for little more than the cost of one. 10,000 resamples.
+/// Shares 10,000 resamples among many rows that played the same scenes, so that any two of them are paired. The tests
+/// above, of every pair, then cost little more than one.
 class SharedResamples {
  public:
   enum class Draws { scenes, scenarios_too };  // beside the policies

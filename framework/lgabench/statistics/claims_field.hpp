@@ -12,7 +12,7 @@
 
 namespace lgabench::report {
 
-/// The cells of one (layout, engine), by row, demonstrations, then scenario and training seed.
+/// The cells of one (layout, engine), by row, demonstrations, scenario and training seed.
 struct Field {
   /// By participant, "" where nobody was asked.
   using People = std::map<std::string, const CellResult*>;
@@ -36,12 +36,12 @@ struct Field {
 /// none.
 std::string find_row(const Field& field, const ClaimedMethod& method);
 
-/// `above` against `below`, every policy of the one with its pair; not tested where a row is missing, or where one
-/// lacks its pair, since whoever fails on hard scenarios would gain by it. Verdicts are left open.
+/// Compares `above` with `below`, each policy with its pair. Not tested where a row or a pair is missing: a row that
+/// fails on hard scenarios would gain by it. Verdicts are left open.
 ClaimedDifference measured(const Field& field, const std::string& claim, const ClaimedMethod& above,
                            const ClaimedMethod& below, const std::string& arm, int n);
 
-/// Likewise of two rows that the field has at this number of demonstrations.
+/// Compares so two rows that the field has at this number of demonstrations.
 ClaimedDifference measured_rows(const Field& field, const std::string& claim, const std::string& above,
                                 const std::string& below, const std::string& arm, int n);
 

@@ -81,11 +81,11 @@ inline constexpr std::array bound_rows{"oracle", "bound"};
 /// the arms have them.
 std::vector<PerturbationCurve> perturbation_curves(const RunResults& run, const std::vector<Table>& tables);
 
-/// What the success in the control, and then at each of these levels, counts in an area: the trapezoids' sides, as
-/// shares of the whole. @pre levels grow, from 1 on
+/// The weights of success in an area, in the control and then at each of these levels: the trapezoids' sides, as shares
+/// of the whole. @pre levels grow, from 1 on
 std::vector<double> trapezoids(const std::vector<int>& levels);
 
-/// As summary.json has them.
+/// The curves as summary.json has them.
 Json to_json(const ErrorCurve& curve);
 Json to_json(const PerturbationCurve& curve);
 

@@ -1,4 +1,4 @@
-// How methods are written, ordered and drawn, the same in every table and figure.
+// Writes, orders and draws methods in the same way in every table and figure.
 #pragma once
 #include <map>
 #include <string>
@@ -17,7 +17,7 @@ std::string display_name(const std::string& method);
 /// map", other "_" and "=" inside an id -> spaces. What is quoted, and names of files and options, stay.
 std::string readable(const std::string& text);
 
-/// Position in tables, by id: the paper's methods in its order, then others (equal rank: by name), then reference rows.
+/// Position in tables, by id: first the paper's methods in its order, then others (by name), then reference rows.
 int display_rank(const std::string& method);
 
 /// Orders rows' names as tables do.
@@ -25,7 +25,7 @@ struct ByRank {
   bool operator()(const std::string& a, const std::string& b) const;
 };
 
-/// What tells a row from others in figures.
+/// What tells a row from other rows in figures.
 struct MethodStyle {
   std::string colour;  // #rrggbb; "" for a reference row, which is grey
   int sides = 0;       // of its mark, a regular polygon; 0 for a circle

@@ -11,7 +11,7 @@
 
 namespace lgabench::report {
 
-/// Whether both acted, and alike, bit for bit: two episodes without an action tell nothing of each other.
+/// Whether both acted and their actions are bit-identical. Two episodes without an action say nothing about each other.
 bool same_action(const Episode& first, const Episode& second);
 
 /// Pairs of episodes, counted.
@@ -34,8 +34,8 @@ struct PolicyPair : EpisodePairs {
   /// Second minus first, in each episode.
   std::vector<double> differences() const;
 };
-/// None unless they are as many, with the same commands in the same order, or with `commands` of the same truth, which
-/// paraphrase each other: those of two arms have other scenes.
+/// Pairs the episodes of two arms, which have other scenes. None unless they are as many, with the same commands in the
+/// same order or, with `commands`, with commands of the same truth, which paraphrase each other.
 std::optional<PolicyPair> pair_episodes(const std::vector<Episode>& first, const std::vector<Episode>& second,
                                         const std::vector<CommandResult>& commands);
 
@@ -46,7 +46,7 @@ std::string why_unpaired(const CellResult& first, const CellResult& second, cons
 /// @throws InputError, in one line, where why_unpaired() has a reason. @pre as there
 PolicyPair pair_policies(const CellResult& first, const CellResult& second, const std::string& arm);
 
-/// Pairs of policies of one row of a table: scenarios, and within each training seeds, or participants where a row has
+/// Pairs of policies of one row of a table, by scenario and then by training seed, or by participant where a row has
 /// several.
 class PairedRow {
  public:

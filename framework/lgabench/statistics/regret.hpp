@@ -1,4 +1,4 @@
-// What a row loses to exact Bayes in a suite of persons, who do not say all that they want.
+// What a row loses against exact Bayes in a suite of persons, who do not say all that they want.
 #pragma once
 #include <string>
 #include <vector>
@@ -21,7 +21,7 @@ struct Regret {
 std::vector<Regret> regrets(const RunResults& run);
 Json to_json(const Regret& regret);
 
-/// The row that others lose to, and the best that is known: the same choosing anew in each scene.
+/// The row that others are compared with, and the best known one: the same rule, which chooses anew in each scene.
 bool is_bayes(const CellResult& cell);
 
 }  // namespace lgabench::report

@@ -1,5 +1,5 @@
-// How a run was set, beyond what its tables say, and what its rows are called for that: no option that tells two of
-// them apart is hidden.
+// A run's settings beyond its tables, and the names of rows that these need: no option that tells two rows apart is
+// hidden.
 #pragma once
 #include <map>
 #include <string>
@@ -13,7 +13,7 @@ namespace lgabench::report {
 /// Whether a description in methods.json, {"id"?, "options"?, ...}, is one of the cell's row.
 bool fits(const CellResult& cell, const JsonReader& description);
 
-/// What methods saw their demonstrations through: "sensor_noise, level 2"; "" where they saw them as they are.
+/// The axis through which methods saw their demonstrations: "sensor_noise, level 2"; "" if none.
 std::string seen_through(const RunResults& run);
 
 /// A line each: the preset, rows whose options differ from their plugins' defaults (rows with the same ones together),

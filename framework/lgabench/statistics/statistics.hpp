@@ -55,7 +55,8 @@ Change welch_t(const std::vector<double>& first, const std::vector<double>& seco
 /// @pre rows of one length, as many as values
 std::vector<Change> least_squares(const std::vector<std::vector<double>>& rows, const std::vector<double>& values);
 
-/// What values at `at` are weighted by in the slope of the line of least squares through them. @pre two places differ
+/// The weights of values at the places `at` in the slope of the line of least squares through them. @pre two places
+/// differ
 std::vector<double> slope_weights(const std::vector<double>& at);
 
 /// Mean with the standard deviation of the values and the standard error of the mean; one value alone has neither.

@@ -19,7 +19,7 @@ namespace lgabench::report {
 
 constexpr const char* mean_scenario = "(mean)";
 
-/// What an arm changed: its success minus that of the first arm, whose scenes and commands are paired with its own.
+/// What an arm changed: its success minus that of the first arm, whose scenes and commands are paired with the arm's.
 struct Shift {
   std::string against;  // the first arm
   double difference = 0;

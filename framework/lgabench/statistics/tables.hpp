@@ -1,4 +1,4 @@
-// What tables of a run say: which columns stand side by side, marks, notes.
+// The parts of a run's tables: the columns that stand side by side, marks, notes.
 #pragma once
 #include <array>
 #include <optional>
@@ -47,8 +47,8 @@ constexpr std::array<Mark, 6> table_marks{
 /// "†§": the row's.
 std::string marks_text(const Row& row);
 
-/// Whether the row acted exactly as in the first arm. Reference rows act alike whatever they see: it says something of
-/// methods alone.
+/// Whether the row acted exactly as in the first arm. This tells something of methods alone: reference rows act alike
+/// whatever they see.
 bool acts_the_same(const Row& row);
 
 /// Whether a row of the table tells.
@@ -57,8 +57,8 @@ bool any_seen(const Table& table);
 /// Why the numbers are no whole run's, one line each: no people answered, cells that have not run or cannot be read.
 std::vector<std::string> what_it_lacks(const RunResults& run);
 
-/// What a reader of the tables must know, one line each: what †, §, ‡, !, ?, ¶ and = say, how many people made
-/// Selections or that none did, the model behind a cassette, cells that have not run, that the run is not for the
+/// The notes that a reader of the tables must know, one line each: what †, §, ‡, !, ?, ¶ and = say, how many people
+/// made Selections or that none did, the model behind a cassette, cells that have not run, that the run is not for the
 /// leaderboard.
 std::vector<std::string> notes(const RunResults& run, const Summary& summary);
 

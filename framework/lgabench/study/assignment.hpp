@@ -1,4 +1,4 @@
-// Who is asked what, when: a pure function of the protocol's seed and a person's number.
+// Assigns to each person what they are asked, and when: a pure function of the protocol's seed and the person's number.
 #pragma once
 #include <array>
 #include <vector>

@@ -1,4 +1,4 @@
-// What a study says: seconds by condition and command, φ̂ against the truth, what was left out.
+// A study's results: seconds by condition and command, Selections against the truth, and what was left out.
 #pragma once
 #include <array>
 #include <optional>
