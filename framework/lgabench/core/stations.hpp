@@ -11,7 +11,7 @@ namespace lgabench {
 /// The station seen nearest to a place of the picture, as a number of `all`. @pre there is one
 std::size_t nearest_station(const Stations& stations, Vec2 seen);
 
-/// The one that the action's numbers are nearest to. @pre there is one
+/// The station that the action's numbers are nearest to. @pre there is one
 std::size_t station_of(const Stations& stations, const Action& action);
 
 /// The mean of an instance's pixels, in the numbers of a station's `seen`; none where it has no pixel.

@@ -1,4 +1,4 @@
-// What a person may have meant by a name that there is not.
+// Suggests what a person may have meant by an unknown name.
 #pragma once
 #include <string>
 #include <string_view>

@@ -18,7 +18,7 @@ std::string one_line(std::string_view text);
 /// Writes bytes as they are. Never throws: a stream that cannot be written keeps the reason of its first failure.
 void put(std::FILE* stream, std::string_view bytes) noexcept;
 
-/// put() of the printable text. stderr that cannot be written is nobody's error; stdout's is told by flush_stdout().
+/// put() of the printable text. A failure to write stderr is ignored; flush_stdout() reports one of stdout.
 template <class... Args>
 void to_stdout(fmt::format_string<Args...> format, Args&&... args) {
   put(stdout, printable(fmt::format(format, std::forward<Args>(args)...)));

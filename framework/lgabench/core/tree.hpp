@@ -11,7 +11,7 @@ struct TreeSize {
   std::uintmax_t files = 0;  // directories among them
 };
 
-/// What lies below the directory that the descriptor is open on. Whoever fills it meanwhile is counted or not.
+/// Measures what lies below the directory that the descriptor is open on; files that come meanwhile may be missed.
 /// Looks at no more than `most_files`, 100 directories deep: what is deeper counts as one file more than that. A
 /// directory that may not be listed is made so that it may.
 TreeSize tree_size(int directory, std::uintmax_t most_files);

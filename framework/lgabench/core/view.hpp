@@ -9,7 +9,7 @@ namespace lgabench {
 /// Towards the usual light, a unit vector: from above, the top view's upper left. Shadows fall to the lower right.
 inline constexpr Vec3 usual_light{-0.36, -0.48, 0.8};
 
-/// As it is here, the usual view. Lengths in metres, angles in radians.
+/// A view; by default the usual one. Lengths in metres, angles in radians.
 struct View {
   Vec2 shift_m;     // of the camera: x along the picture's rows, to the right, y along its columns, down
   Vec2 turn_rad;    // of the camera: x to the left, y down; one that looks straight down, without perspective, turns

@@ -8,8 +8,8 @@
 namespace lgabench::http {
 
 /// Ends connections that this process accepted on `port` once they lasted longer than `seconds` or sent more than
-/// `bytes`, looking ten times a second. httplib has neither limit: a timeout of reading begins anew with each byte, and
-/// a head is read until it ends.
+/// `bytes`, looking ten times a second. httplib has neither limit: its timeout of reading begins anew with each byte,
+/// and it reads a head until that ends.
 class ConnectionLimits {
  public:
   ConnectionLimits(int port, double seconds, std::uint64_t bytes);

@@ -11,12 +11,12 @@ namespace lgabench {
 /// Normalises one convolution's outputs, `positions` x channels. The arrays given are the caller's.
 class BatchNorm {
  public:
-  /// Takes its scale (1 at first) and shift (0). @pre both outlive this.
+  /// Takes room for its scale (1 at first) and shift (0). @pre both outlive this.
   BatchNorm(int channels, Parameters& parameters, const Kernels& kernels);
 
-  /// With the batch's own statistics, which move the running ones; negative numbers replaced by 0 if `relu`.
+  /// Normalises by the batch's own statistics, which move the running ones. Negative numbers become 0 if `relu`.
   void train(const float* values, int positions, float* out, bool relu);
-  /// As train(), with the running statistics.
+  /// Normalises as train() does, by the running statistics.
   void apply(const float* values, int positions, float* out, bool relu);
   /// Replaces d loss / d out of the last train() by d loss / d value, in place; `out` where train() had a ReLU, else
   /// null.

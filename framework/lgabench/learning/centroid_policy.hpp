@@ -9,15 +9,15 @@
 
 namespace lgabench {
 
-/// Sees one signed mask (shrink_mask()), of the native size: target and avoid set apart, which the mask that LGA's
-/// network sees does not tell. Fitted by begin(); trains in no pass and has no parameters.
+/// Sees one signed mask (shrink_mask()) of the native size, which tells the target from the avoid set; the mask of
+/// LGA's network does not. begin() fits the policy; it trains in no pass and has no parameters.
 ///
-/// The taken point is the centroid of the target's pixels (of several pieces the largest one's; in a demonstration the
-/// one's nearest to where the action begins), moved to the piece's nearest pixel with two more on every side where it
-/// is not on such a one. The action's first place is the taken point where most demonstrations begin on the target.
-/// Each other coordinate of the places is the demonstrations' mean as it is or relative to the taken point, whichever
-/// varies less (spreads below .001 are equal; of equals the latter where most demonstrated places lie on the target).
-/// All else are means.
+/// The taken point is the centroid of the target's pixels (of the largest piece; in a demonstration, of the piece
+/// nearest to where the action begins), moved to the piece's nearest pixel with two more on every side where it is not
+/// on such a one. The action's first place is the taken point where most demonstrations begin on the target. Each other
+/// coordinate of the places is the demonstrations' mean as it is or relative to the taken point, whichever varies less
+/// (spreads below .001 are equal; of equals the latter where most demonstrated places lie on the target). All other
+/// numbers are means.
 ///
 /// Where most do not begin on the target (sweep), demonstrations of one direction of push (unit vectors within .15) are
 /// a group with means of its own; a scene is given the largest of the groups whose mean direction from the taken point

@@ -1,5 +1,5 @@
-// The first convolution of a tower. Most patches of a mask are empty, and most of a picture is the table as every
-// sample shows it: only what differs from the usual picture is multiplied, picture by picture, by linearity. Private to
+// The first convolution of a tower. Most patches of a mask are empty, and most of a picture is the table that every
+// sample shows. By linearity, only what differs from the usual picture is multiplied, picture by picture. Private to
 // learning/.
 #pragma once
 #include <vector>

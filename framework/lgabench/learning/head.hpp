@@ -9,8 +9,8 @@
 
 namespace lgabench {
 
-/// What network_shape.hpp says of it for each architecture. One thread at a time; a call allocates nothing where
-/// make_room() was for as many rows.
+/// The head of each architecture of network_shape.hpp. One thread at a time; a call allocates nothing where make_room()
+/// was for as many rows.
 class Head {
  public:
   /// Takes its parameters in PyTorch's order: the layers of single inputs, the one that joins them, the last. They

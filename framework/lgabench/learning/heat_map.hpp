@@ -1,4 +1,4 @@
-// A policy that keeps spatial positions and is trained: where to take hold is a heat map over the table, the rest is
+// A policy that keeps spatial positions and is trained. A heat map over the table says where to take hold; the rest is
 // done as it was shown. Beyond the paper: with a goal mask and with pixels alone, it tells what an abstraction is worth
 // to a policy that need not learn where pixels are.
 #pragma once
@@ -33,8 +33,8 @@ class HeatMap : public Learner {
 
   /// @throws InputError for a shape without a picture, or with pictures of another size, and for actions without a
   /// place in the picture.
-  /// `copy_penalty`: how much a copy's map counts that differs from that of the row it was made of, as the cross
-  /// entropy of the one to the other; 0: not at all.
+  /// `copy_penalty` weighs the cross entropy between a copy's map and that of the row it was made of; 0: it does not
+  /// count.
   HeatMap(const SampleShape& shape, std::uint64_t seed, double copy_penalty = 0);
   ~HeatMap() override;
   HeatMap(const HeatMap&) = delete;
@@ -44,7 +44,7 @@ class HeatMap : public Learner {
   void begin(const Samples& samples) override;
   /// The mean demonstrated action where a mask shows no target, or never showed one.
   const std::vector<float>& predict(const Samples& samples) override;
-  /// Samples whose mask shows nothing near the taken point teach nothing.
+  /// Samples whose mask shows nothing near the taken point have no gradient.
   double backward(const Samples& samples, const std::vector<int>& batch) override;
   void update(double learning_rate) override;
   std::vector<float> parameters() const override;

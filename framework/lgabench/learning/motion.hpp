@@ -1,4 +1,4 @@
-// What demonstrations have in common once a point is taken. Private to learning/.
+// The motion that demonstrations share once a point is taken. Private to learning/.
 #pragma once
 #include <optional>
 #include <vector>
@@ -14,7 +14,7 @@ struct Places {
   std::optional<Vec2> second_m{};  // centroid of the second set
 };
 
-/// A demonstrated action, executable(), and where its scene had what.
+/// A demonstrated action, executable(), and the points of its scene.
 struct Demonstrated {
   Action label;
   Places places;

@@ -33,8 +33,8 @@ class Network : public Learner {
   /// Gradients of the last backward(), in the same order. That of a bias before batch normalisation is 0.
   std::vector<float> gradients() const;
 
-  /// Finds what most pictures share, which makes a step faster and changes its rounding: not in `plain`, which keeps
-  /// the bits that earlier versions gave it.
+  /// Finds what most pictures share, which makes a step faster and changes its rounding. `plain` does without, to keep
+  /// the bits of earlier versions.
   void begin(const Samples& samples) override;
   /// With batch normalisation the running statistics are used.
   const std::vector<float>& predict(const Samples& samples) override;

@@ -17,9 +17,9 @@ class Parameters {
  public:
   explicit Parameters(std::uint64_t seed);
 
-  /// Place of so many numbers side by side, 0 unless they are named below.
+  /// Takes room for so many numbers side by side, and returns its place. They are 0 unless named below.
   std::size_t take(int numbers);
-  /// The next ones in PyTorch's order, at these places, begin uniform between two numbers (or at one).
+  /// Names the next numbers in PyTorch's order, at these places. They begin uniform between two numbers (or at one).
   void uniform(const std::vector<std::size_t>& places, double low, double high);
   /// The next ones in PyTorch's order are a matrix, row by row, that begins with orthonormal rows (columns, if they are
   /// fewer), uniformly distributed (Saxe et al. 2014; torch.nn.init.orthogonal_).

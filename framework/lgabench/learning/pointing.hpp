@@ -1,4 +1,4 @@
-// Acting without a policy that was learned, so that the abstraction alone decides.
+// Acts without a learned policy, so that the abstraction alone decides.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -12,7 +12,7 @@ namespace lgabench {
 /// places, the instance is hidden, or no place is in view.
 Action pointed_at(const Observation& observation, std::uint8_t instance, const ActionSpace& actions);
 
-/// One of those, by a hash of all that is in view. @pre there is one.
+/// Chooses one of those instances, by a hash of all that is in view. @pre there is one.
 std::uint8_t any_in_view(const std::vector<std::uint8_t>& ids, const Observation& observation);
 
 /// policy=point: points at what the Selection keeps, at any of several; where it keeps nothing, at anything in view.

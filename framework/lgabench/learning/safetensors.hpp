@@ -11,8 +11,8 @@ namespace lgabench {
 /// The single-precision tensors of a file, checked: every size and place agrees with the file. Owns the numbers.
 class Safetensors {
  public:
-  /// `sum`: the file's SHA-256, "" for any. @throws InputError with file and place for a file that cannot be read, has
-  /// another sum or is not as its header says.
+  /// `sum`: the file's SHA-256, "" for any. @throws InputError with file and place if the file cannot be read, has
+  /// another sum or differs from its header.
   explicit Safetensors(const std::filesystem::path& file, const std::string& sum = "");
 
   /// The numbers of a tensor, row-major; valid as long as this object.

@@ -1,4 +1,4 @@
-// Training on an action's numbers as shares of their bounds. Private to learning/.
+// Trains on an action's numbers as shares of their bounds. Private to learning/.
 #pragma once
 #include <memory>
 

@@ -6,8 +6,8 @@
 
 namespace lgabench {
 
-/// Of the first row of `read`, which a Featurizer of these `inputs` wrote. `offered`: the method's inputs, of which a
-/// policy of that kind takes those that it can use (inputs_of()).
+/// Shows the first row of `read`, which a Featurizer of these `inputs` wrote. `offered`: the method's inputs, of which
+/// a policy of that kind takes those that it can use (inputs_of()).
 Shown shown_input(const PolicyInputs& offered, const PolicyInputs& inputs, PolicyKind policy, const Samples& read);
 
 }  // namespace lgabench

@@ -25,7 +25,7 @@ struct Progressed {
   std::string problem{};  // why it cannot be read; "" where it can
 };
 
-/// @throws nothing for a run that cannot be read: it has a problem.
+/// A run that cannot be read has a `problem`; nothing is thrown.
 Progressed progress_of(const fs::path& run, const std::string& name);
 
 /// A page over runs, whether they are finished or not; a run that has a report leads to NAME/report.html.

@@ -1,4 +1,4 @@
-// What the tables and the figures of perturbations share.
+// The parts that tables and figures of perturbations share.
 #pragma once
 #include <string>
 #include <vector>

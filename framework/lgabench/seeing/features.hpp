@@ -21,9 +21,9 @@ struct Picture {
   std::array<cv::Rect, 256> around;  // each segment, with a pixel on each side where the picture has one
 };
 
-/// Of segment `id`: empty where it has no pixel. Shape: size, moments, outline, holes, and how far its shadow reaches
-/// on the table, which tells high from flat from straight above. Surface: colours and their quantiles, edges,
-/// directions. Both are computed in integers or element by element in doubles: the same on every processor.
+/// The features of segment `id`, empty where it has no pixel. Shape: size, moments, outline, holes, and how far its
+/// shadow reaches on the table, which tells high from flat from straight above. Surface: colours and their quantiles,
+/// edges, directions. Both are computed in integers or element by element in doubles: the same on every processor.
 std::vector<float> shape_features(const Picture& picture, std::uint8_t id);
 std::vector<float> surface_features(const Picture& picture, std::uint8_t id);
 

@@ -35,7 +35,7 @@ struct ComparedTime {
   double p_holm = 1;  // over all rows and phases
 };
 
-/// Cells that measure the same but played other scenes: they are not compared in that arm.
+/// Cells that measure the same but did not play the same scenes: they are not compared in that arm.
 struct OtherScenes {
   std::string layout, engine, scenario, arm, why;  // why: of the first pair
   std::vector<std::string> cells;                  // "lga n=20 seed=0", in B's names

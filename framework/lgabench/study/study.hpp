@@ -12,7 +12,7 @@
 
 namespace lgabench::study {
 
-/// Whether a directory holds people's answers or a trial's. One directory never holds both.
+/// Whether a directory holds people's answers or a rehearsal's. One directory never holds both.
 enum class Kind { people, rehearsal };
 
 /// DIR/study.events (the study's log: what it is, every slot, withdrawals), DIR/people/ID.events,
