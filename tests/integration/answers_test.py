@@ -152,7 +152,7 @@ class Cassettes(Asking):
         self.assertIn("tape.jsonl: cannot be read", self.call(*run, expect=2).stderr)
         kept = self.dir / "out/answers" / (digest + ".jsonl")
         kept.write_bytes(kept.read_bytes().replace(b"Final answer: no", b"Final answer: yes", 1))
-        self.assertIn("does not have the bytes that its name says", self.call("verify", "out", expect=2).stderr)
+        self.assertIn("its SHA-256 is not the one in its name", self.call("verify", "out", expect=2).stderr)
 
         # One answer that is another makes other cells.
         (self.dir / "tape.jsonl").write_bytes(tape.replace(b"Final answer: no", b"Final answer: yes", 1))
@@ -286,7 +286,7 @@ class Live(Asking):
         (self.dir / "tape.jsonl").rename(self.dir / "elsewhere.jsonl")
         self.assertIn("4 bit-identical", self.call("verify", "out", "--all").stdout)
         shutil.rmtree(next((self.dir / "out/cells").iterdir()))
-        self.assertIn(f"tape.jsonl: lacks replies that out is based on; they are in out/answers/{digest}.jsonl",
+        self.assertIn(f"tape.jsonl: lacks replies that the run out used; copy out/answers/{digest}.jsonl there",
                       self.play("--resume", expect=2).stderr)
         shutil.copy(self.dir / f"out/answers/{digest}.jsonl", self.dir / "tape.jsonl")
         self.play("--resume")
@@ -296,7 +296,7 @@ class Live(Asking):
         kept.rename(self.dir / "kept.jsonl")
         self.assertIn("its language model's replies are not kept in answers/", self.call("verify", "out", expect=2).stderr)
         kept.write_bytes(tape.replace(b"Final answer: no", b"Final answer: yes", 1))
-        self.assertIn("does not have the bytes that its name says", self.call("verify", "out", expect=2).stderr)
+        self.assertIn("its SHA-256 is not the one in its name", self.call("verify", "out", expect=2).stderr)
 
     def test_declared_questions_are_asked_before_any_cell(self):
         """So their time is no cell's, and how many there are is said beforehand and meanwhile."""
@@ -382,7 +382,7 @@ class Live(Asking):
         self.assert_matches_schemas("merged")
         self.assertIn("4 bit-identical", self.call("verify", "merged", "--all").stdout)
         self.call(*self.run_it, *self.ANSWERS[:-1], "other.jsonl", "--shard", "2/2", "--out", "apart")
-        self.assertIn("asked the same twice, on two cassettes", self.call("merge", "both", "part1", "apart", expect=2).stderr)
+        self.assertIn("asked the same questions for two cassettes", self.call("merge", "both", "part1", "apart", expect=2).stderr)
         self.assertFalse((self.dir / "both").exists())
 
     def test_questions_while_learning_are_paid_for_too(self):
@@ -497,7 +497,7 @@ class Recorded(Case):
     def test_one_source_alone_refuses_what_it_lacks_before_any_cell(self):
         run = ["run", "q1", *RUN, "--out", "out", "--scenarios", "heart,letter,rotate_block", "--answers"]
         for source, lacking in (("gpt4_released", "letter, rotate_block"), ("gpt4_study", "rotate_block")):
-            self.assertIn(f"--answers {source}: expected answers for {lacking}; there are those for: red_heart",
+            self.assertIn(f"--answers {source}: expected answers for {lacking}; it has those for: red_heart",
                           self.call(*run, source, expect=2).stderr)
         self.assertFalse((self.dir / "out").exists())
 
@@ -655,7 +655,7 @@ class Paraphrases(Case):
     def test_where_nothing_is_recorded_one_line_says_so(self):
         refused = self.call("run", "paraphrases", "--preset", "smoke", "--methods", "lga", "--answers", "claude", "--out", "run",
                             expect=2).stderr
-        self.assertIn("--answers claude: expected answers for paraphrase_red_heart, paraphrase_rotate_block; there are those for: ",
+        self.assertIn("--answers claude: expected answers for paraphrase_red_heart, paraphrase_rotate_block; it has those for: ",
                       refused)
 
 
@@ -719,7 +719,7 @@ class Written(Case):
         self.assertIn("mine.json: ", self.call(*self.run_it, "--out", "out", expect=2).stderr)
         self.assertIn("there.json: cannot be read", self.call(*self.run_it[:-1], "there.json", "--out", "out", expect=2).stderr)
         self.write(self.answers)
-        self.assertIn("--answers mine.json: expected answers for letter; there are those for: heart | sweep_block_without_touching_line",
+        self.assertIn("--answers mine.json: expected answers for letter; it has those for: heart | sweep_block_without_touching_line",
                       self.call("run", "q1", *RUN, "--scenarios", "letter", "--answers", "mine.json", expect=2).stderr)
         self.assertFalse((self.dir / "out").exists())
 
@@ -825,7 +825,7 @@ class Humans(Case):
         one = self.call(*self.RUN, "--out", "one", "--humans", "people", "--no-reference").stdout
         self.assertRegex(one, r"Human .*‡")  # a scenario is missing from the mean
         refused = self.call(*self.RUN[:2], "--scenarios", "letter", *self.RUN[4:], "--out", "none", "--humans", "people", expect=2)
-        self.assertIn("--humans: expected answers for lga_hill in a scenario of this run", refused.stderr)
+        self.assertIn("--humans: no person answered for lga_hill in a scenario of this run", refused.stderr)
 
     def test_where_nobody_is_asked_nobodys_answers_are_taken(self):
         refused = self.call("run", "q1", "--scenarios", "heart", "--methods", "gcbc_seg", "--demos", "10", "--seeds", "0",

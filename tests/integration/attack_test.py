@@ -100,12 +100,12 @@ class Runs(OneRun):
                 link = self.dir / "part" / place
                 shutil.rmtree(link) if link.is_dir() else link.unlink(missing_ok=True)
                 link.symlink_to(self.dir / "part" / target if target.startswith("cells") else self.dir / target)
-                self.refused("report", "part", says="a symbolic link; a run holds none")
+                self.refused("report", "part", says="a symbolic link, which a run may not hold")
                 for command, expect in ((["merge", "merged", "part"], None), ([*RUN, "--out", "part"], None)):
                     done = subprocess.run(command_line(*command), cwd=self.dir, env=self.environment, timeout=100,
                                           capture_output=True, text=True)
                     self.assertIn(done.returncode, (0, 2, 3), done.stderr)
-                    self.assertIn("a symbolic link; a run holds none", done.stderr)
+                    self.assertIn("a symbolic link, which a run may not hold", done.stderr)
                 for file in [*(self.dir / "merged").rglob("*"), *(self.dir / "part").rglob("*")]:
                     if file.is_file() and not file.is_symlink() and not file.resolve().is_relative_to(self.dir / "secret"):
                         self.assertNotIn(b"the secret", file.read_bytes(), file)

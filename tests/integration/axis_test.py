@@ -140,7 +140,7 @@ class PluginAxes(case.Case):
         self.assertIn("expected a level from 1 to 10 (as it should; dead; ",
                       self.call("run", suite, "--dry-run", "--plugin-path", AXIS, expect=2).stderr)
         self.assertIn('no axis "fixture_axis"', self.call("run", suite, "--dry-run", expect=2).stderr)
-        self.assertIn("expected an axis that changes what is perceived and nothing else",
+        self.assertIn("expected an axis that changes only the observation",
                       self.call("run", "q1", "--dry-run", "--plugin-path", AXIS, "--train-on", "fixture_axis:1", expect=2).stderr)
 
     def test_the_axis_of_another_version_is_refused(self):

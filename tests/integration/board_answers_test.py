@@ -136,7 +136,7 @@ class AnswersAlone(Board):
         # The cells follow from these bytes.
         kept.write_text(kept.read_text().replace('"star"', '"moon"'))
         self.assertIn(f"{kept.name} is not there, or not what its name says", self.leaderboard("check", expect=1).stderr)
-        self.assertIn("does not have the bytes that its name says",
+        self.assertIn("its SHA-256 is not the one in its name",
                       self.leaderboard("verify", "--by", "B. Reader", expect=2).stderr)
 
     def test_a_servers_replies_are_scored_with_their_price(self):
@@ -194,7 +194,7 @@ class AnswersAlone(Board):
         kept = self.dir / "run/made_up/answers" / (self.digest("made_up") + ".json")
         kept.write_text(kept.read_text().replace('"star"', '"moon"'))
         refused = self.leaderboard("add", "run/made_up", "--entry", "made_up_entry.json", expect=2)
-        self.assertIn("does not have the bytes that its name says", refused.stderr)
+        self.assertIn("its SHA-256 is not the one in its name", refused.stderr)
         kept.unlink()
         refused = self.leaderboard("add", "run/made_up", "--entry", "made_up_entry.json", expect=1)
         self.assertIn(f"refused: file:{kept.stem}: the file is not in answers/ of the run", refused.stderr)

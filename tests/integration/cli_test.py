@@ -231,7 +231,7 @@ class DryRuns(Case):
         first = process.stderr.readline()
         process.terminate()
         process.wait()
-        self.assertRegex(first, r"^611 cells to compute, 0 already computed: about \d+ min with 1 worker; --dry-run shows of what\n$")
+        self.assertRegex(first, r"^611 cells to compute, 0 already computed: about \d+ min with 1 worker; --dry-run shows it by row\n$")
 
 
 class Resuming(Case):

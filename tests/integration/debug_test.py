@@ -76,13 +76,13 @@ class Debugging(Authors):
 
     def test_a_key_names_one_cell(self):
         self.assertEqual(len({*self.keys("fixture_segfault,fixture_throw")}), 2)
-        self.assertIn("0 of the run's cells begin so", self.debug("0" * 16, "", "fixture_throw", expect=2))
+        self.assertIn("0 of the run's cell keys begin so", self.debug("0" * 16, "", "fixture_throw", expect=2))
 
     def test_without_gdb(self):
         key, = self.keys("fixture_segfault")
         self.environment["PATH"] = str(self.dir)
         self.assertRegex(self.debug(key, "", "fixture_segfault", expect=2),
-                         r"gdb is not there .*\n  gdb -q -ex 'set breakpoint pending on' --args /.*/lgabench-method")
+                         r"gdb is not installed .*\n  gdb -q -ex 'set breakpoint pending on' --args /.*/lgabench-method")
 
     @unittest.skipUnless(shutil.which("gdb"), "gdb is not installed")
     def test_gdb(self):

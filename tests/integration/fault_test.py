@@ -381,8 +381,8 @@ class TornFiles(Faults):
         before = json.loads(record.read_text())
         record.unlink()
         for words in (NO_TRAINING, [*NO_TRAINING, "--fresh"], [*with_options(NO_TRAINING, "--episodes", "3"), "--resume"]):
-            self.assertRegex(self.call(*words, "--out", "out", expect=2).stderr, "out: cells without their run.json; the command "
-                             "that computed them, with --resume, writes it again\n$")
+            self.assertRegex(self.call(*words, "--out", "out", expect=2).stderr, "out: cells without their run.json; repeat the "
+                             "command that computed them, with --resume, to write it\n$")
             self.assertFalse(record.exists())
         said = self.call(*NO_TRAINING, "--out", "out", "--resume").stderr
         self.assertIn("0 cells computed, 1 reused, 0 failed", said)

@@ -26,8 +26,8 @@ class OldRuns(Case):
             for words in (["report", "old"], ["status", "old"], ["compare", "old", "old"], ["verify", "old"],
                           ["attribute", "old"], ["merge", "new", "old"], RUN, [*RUN, "--resume"])[some]:
                 done = self.call(*words, expect=2)
-                self.assertRegex(done.stderr, rf"\A(?:error: |lgabench: )?\S*old/run\.json: of lgabench {version}, whose "
-                                 r"runs 0\.\d+\.\d+ does not read\n\Z", words)
+                self.assertRegex(done.stderr, rf"\A(?:error: |lgabench: )?\S*old/run\.json: written by lgabench {version}, "
+                                 r"whose runs 0\.\d+\.\d+ cannot read\n\Z", words)
                 self.assertEqual(done.stdout, "")
             self.assertEqual([(path.name, path.read_text()) for path in (self.dir / "old").iterdir()],
                              [("run.json", before)])
@@ -35,7 +35,7 @@ class OldRuns(Case):
     def test_of_a_version_with_other_cells_are_not_gone_on_with(self):
         self.write("0.99.0")
         for words, said in ((["verify", "old"], r"old: a run of lgabench 0\.99\.0, and this is .*: verify it with 0\.99\.0"),
-                            (RUN, r"old: a run of lgabench 0\.99\.0, whose cells 0\.\d+\.\d+ cannot go on with")):
+                            (RUN, r"old: a run of lgabench 0\.99\.0, which 0\.\d+\.\d+ cannot resume")):
             self.assertRegex(self.call(*words, expect=2).stderr, said)
 
 

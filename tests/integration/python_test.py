@@ -265,7 +265,7 @@ class PythonMethods(Case):
             (self.dir / "helper.py").write_text(f"x = {seed}\n")
             self.call(*with_options(RUN, "--seeds", seed), "--methods", "mine.py:Mine", "--out", "of" + seed)
         said = self.call("merge", "both", "of0", "of1", expect=2).stderr
-        self.assertRegex(said, r"of[01]/cells/\w+ and of[01]/cells/\w+: other builds of method mine: their interpreter, ")
+        self.assertRegex(said, r"of[01]/cells/\w+ and of[01]/cells/\w+: different builds of method mine: their interpreter, ")
         self.assertFalse((self.dir / "both").exists())
         self.call("merge", "one", "of0")
 

@@ -40,7 +40,7 @@ class BadInput(Case):
             (["q1", "--selection-errors", "missing=1.5"], r"--selection-errors: expected a number from 0 to 1"),
             (["q1", "--train-on", "sensor_noise"], r"--train-on: expected AXIS:LEVEL or AXIS:any, such as sensor_noise:2; got \"sensor_noise\""),
             (["q1", "--train-on", "sensor_noise:9"], r"--train-on: expected a level from 1 to 4 \("),
-            (["q1", "--train-on", "selection_errors:1"], r"--train-on: expected an axis that changes what is perceived and nothing else \(light_intensity, .*, got selection_errors"),
+            (["q1", "--train-on", "selection_errors:1"], r"--train-on: expected an axis that changes only the observation \(light_intensity, .*, got selection_errors"),
             (["q1", "--train-on", "moon:any"], r'--train-on: no axis "moon", expected one of: light_intensity'),
             (["perturbations", "--axes", "camera_trun"], r'--axes: no axis "camera_trun" \(did you mean "camera_turn"\?\)'),
             (["perturbations", "--axes", "camera_turn:1+7"], r"--axes: camera_turn has no level 7 here, expected one of: 1, 2, 3, 4"),
@@ -279,7 +279,7 @@ class Determinism(Case):
         damaged = next((self.dir / "two/cells").glob("*/episodes.jsonl"))
         damaged.write_bytes(damaged.read_bytes()[:-10])
         said = self.call("run", *SMALL, "--out", "two").stderr
-        self.assertRegex(said, r"episodes.jsonl does not have the bytes that were written; computed again")
+        self.assertRegex(said, r"episodes.jsonl changed since it was written; computed again")
         self.assertIn("1 cells computed", said)
         self.assert_same_results("one", "two")
         self.assert_matches_schemas("two")
@@ -381,17 +381,17 @@ class Shards(Case):
             record.write_text(json.dumps(run))
         for runs, says in [
             (["a", "b"], r"a and b are not parts of one run: other cells: episodes 2 there, 3 wanted"),
-            (["a", "forged"], rf"a/cells/{cell.name} and forged/cells/{cell.name}: other results of one cell: episodes"),
-            (["a", "rebuilt"], r"a and rebuilt are not parts of one run: other builds of lgabench-worker"),
+            (["a", "forged"], rf"a/cells/{cell.name} and forged/cells/{cell.name}: different results of one cell: episodes"),
+            (["a", "rebuilt"], r"a and rebuilt are not parts of one run: different builds of lgabench-worker"),
             (["without_plugin", "a", "other_plugin"],
-             r"a and other_plugin are not parts of one run: other builds of method fixture_constant"),
+             r"a and other_plugin are not parts of one run: different builds of method fixture_constant"),
             (["a", "none"], r"none/run.json: cannot be read"),
         ]:
             with self.subTest(runs):
                 done = self.call("merge", "out", *runs, expect=2)
                 self.assertRegex(done.stderr, says)
                 self.assertFalse((self.dir / "out").exists())
-        self.assertRegex(self.call("merge", "a", "a", expect=2).stderr, r"a: both to be read and to be written")
+        self.assertRegex(self.call("merge", "a", "a", expect=2).stderr, r"a: both an input and OUT")
         for shard in ("0/2", "3/2", "1", "1/2/3", "x/2", "1/"):
             self.assertRegex(self.call(*one, "--shard", shard, expect=2).stderr, rf"--shard {shard}: expected i/n")
 

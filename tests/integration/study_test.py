@@ -389,7 +389,7 @@ class StudyRehearsal(StudyCase):
 
         run = ["run", "q1", "--humans", "data/participants", "--scenarios", "heart,red_heart,rotate_block", "--methods",
                "lga,lga_hill,human", "--demos", "50", "--seeds", "0", "--episodes", "3", "--set", "*.epochs=1", "--out", "out"]
-        self.assertIn("p01.json: /rehearsal: no person's answers; --rehearsal", self.call(*run, expect=2).stderr)
+        self.assertIn("p01.json: /rehearsal: answers of a rehearsal; --rehearsal", self.call(*run, expect=2).stderr)
         table = self.call(*run, "--rehearsal", "--tables").stdout
         self.assertIn("rehearsal, not people: not for the leaderboard.", table)
         self.assertIn("Human: 6 participants (rehearsal, not people).", table)

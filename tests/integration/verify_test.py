@@ -139,13 +139,13 @@ class Verify(BesideOneRun):
             file.write("\n")
         done = self.verify("--all", expect=1)
         self.assertRegex(done.stderr.splitlines()[0],
-                         rf"^edited: .*{self.cell.name}/episodes.jsonl does not have the bytes that were written")
+                         rf"^edited: .*{self.cell.name}/episodes.jsonl changed since it was written")
         self.assertIn("4 of 4 finished cells", done.stdout)
         self.assertEqual(done.stdout.splitlines()[-1], "1 cells were edited: not verified")
 
     def test_a_cell_under_another_name_is_edited(self):
         self.change("cell.json", 0, training_seed=1)
-        self.assertIn("cell.json does not have the bytes that were written", self.verify("--sample", "1", expect=1).stderr)
+        self.assertIn("cell.json changed since it was written", self.verify("--sample", "1", expect=1).stderr)
 
     def test_no_run(self):
         shutil.rmtree(self.run_directory / "cells")

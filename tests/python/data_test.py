@@ -67,7 +67,7 @@ class Runs(Case):
         cell = next(path for path in (self.dir / "run/cells").iterdir())
         episodes = cell / "episodes.jsonl"
         episodes.write_text(episodes.read_text().replace('"index":0', '"index":7'))
-        with self.assertRaisesRegex(ValueError, "episodes.jsonl: not as it was written"):
+        with self.assertRaisesRegex(ValueError, "episodes.jsonl: changed since it was written"):
             data.load_run(self.dir / "run")
         self.assertIn(7, set(data.load_run(self.dir / "run", verify=False).episodes["index"]))
         episodes.rename(cell / "moved")
@@ -87,7 +87,7 @@ class Runs(Case):
     def test_a_run_of_an_older_version(self):
         old = (pathlib.Path(__file__).parents[1] / "integration/run_0_1.json").read_bytes()
         (self.dir / "run/run.json").write_bytes(old)
-        with self.assertRaisesRegex(ValueError, r"run\.json: of lgabench 0\.1\.0, whose runs this version does not read"):
+        with self.assertRaisesRegex(ValueError, r"run\.json: written by lgabench 0\.1\.0, whose runs this version cannot read"):
             data.load_run(self.dir / "run")
 
 

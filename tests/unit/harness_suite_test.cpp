@@ -430,7 +430,7 @@ TEST(TrainOn, IsASettingOfMethodsAlone) {
   }
   const auto refusal = [&](const Json& through) { return message_of<InputError>([&] { with(through); }); };
   EXPECT_SAYS(refusal({{"selection_errors", 1}}),
-              "mine: /train_on: expected an axis that changes what is perceived and nothing else (light_intensity, ");
+              "mine: /train_on: expected an axis that changes only the observation (light_intensity, ");
   EXPECT_SAYS(refusal({{"all", 1}}), ", got all");
   EXPECT_SAYS(refusal({{"sensor", 1}}), "no axis \"sensor\" (did you mean \"sensor_noise\"?)");
   EXPECT_SAYS(refusal({{"sensor_noise", 5}}), "/train_on/sensor_noise: expected a level from 1 to 4 (");

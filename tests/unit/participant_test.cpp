@@ -132,7 +132,7 @@ TEST_F(ParticipantFile, EveryParticipantHasOne) {
   read(invented());
   write_file(path / "p02.json", invented().dump());
   EXPECT_SAYS(message_of<InputError>([&] { read_participants(path, false, all); }),
-              "\"made-up-01\" has another file there");
+              "\"made-up-01\" has a second file there");
 }
 
 // Files of recorded answers, shipped or written by hand: reader and schema agree.

@@ -255,7 +255,7 @@ TEST(Perturbations, WhatThereIsNotIsRefusedInOneLine) {
   Json json = load_scenario("heart").json;
   json["tests"].push_back({{"arm", "other"}, {"distractors", {2, 2}}, {"perturbation", {{"all", 1}}}});
   EXPECT_SAYS(message_of<InputError>([&] { read_scenario(json, "mine.json"); }),
-              "the members of the first arm, its control");
+              "the other members of the first arm, its control");
 }
 
 TEST(Perturbations, AScenarioCarriesWhatThePluginsOfItsArmsDeclare) {
@@ -271,7 +271,7 @@ TEST(Perturbations, AScenarioCarriesWhatThePluginsOfItsArmsDeclare) {
   EXPECT_TRUE(fog.of_plugin && fog.touches(EpisodePart::ids) && fog.touches(EpisodePart::input));
   EXPECT_FALSE(fog.touches(EpisodePart::instances) || fog.touches(EpisodePart::objects));
   EXPECT_SAYS(message_of<InputError>([&] { fog.perceive({}, scenario, 1, RandomStream("x")); }),
-              "perturbation fog: a plugin's, whose process only cells of a run have");
+              "perturbation fog: its plugin runs only in the cells of a run");
   EXPECT_EQ(axes_of(scenario, {"all", 1}), axes_of(load_scenario("heart"), {"all", 1})) << "which all does without";
   json["axes"]["fog"]["changes"] = {"words"};
   EXPECT_SAYS(message_of<InputError>([&] { read_scenario(json, "mine.json"); }),

@@ -270,9 +270,9 @@ TEST(Views, AnEnvironmentWithOneViewRefusesWhatMovesIt) {
     return message_of<InputError>([&] { expect(perturbation, "flat", false); });
   };
   EXPECT_SAYS(refusal(json),
-              "mine.json: /tests/1/perturbation: expected an axis that leaves the view as it is (camera_turn does "
-              "not): environment flat has one alone");
-  EXPECT_SAYS(refusal(all), "(light_direction does not)");
+              "mine.json: /tests/1/perturbation: expected an axis that keeps the view (camera_turn changes "
+              "it): environment flat has only one");
+  EXPECT_SAYS(refusal(all), "(light_direction changes it)");
   EXPECT_NO_THROW(expect(blur, "flat", false));
   EXPECT_NO_THROW(expect(json, "tabletop", true));
 }

@@ -16,7 +16,7 @@ namespace {
 // The file of that hash, if it still has it.
 fs::path kept_file(const fs::path& kept, const std::string& hash, const char* ending) {
   const fs::path file = kept / (hash + ending);
-  if (sha256_file(file) != hash) throw InputError(file.string() + ": does not have the bytes that its name says");
+  if (sha256_file(file) != hash) throw InputError(file.string() + ": its SHA-256 is not the one in its name");
   return file;
 }
 

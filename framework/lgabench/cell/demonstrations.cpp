@@ -82,12 +82,11 @@ std::vector<Demonstration> read_sealed(const fs::path& file, const Json& made_fr
   const std::size_t seal = bytes.size() < 2 ? bytes.npos : bytes.rfind('\n', bytes.size() - 2);
   const Json said = seal == bytes.npos ? Json() : json_or_null(std::string_view(bytes).substr(seal + 1));
   if (!said.is_object() || !said.contains("made_from") || !said.contains("sha256"))
-    throw InputError(file.string() + ": expected a last line that says what it holds: cut off, or of an older version");
+    throw InputError(file.string() + ": expected a last line with its description: cut off, or of an older version");
   if (said.at("made_from") != made_from)
     throw InputError(file.string() + ": holds other scenes or labels than its name says");
   bytes.resize(seal);
-  if (said.at("sha256") != sha256(bytes))
-    throw InputError(file.string() + ": does not have the bytes that were written");
+  if (said.at("sha256") != sha256(bytes)) throw InputError(file.string() + ": changed since it was written");
   return read_demonstrations(std::move(bytes), file.string());
 }
 

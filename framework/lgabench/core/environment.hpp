@@ -75,12 +75,12 @@ class Environment {
   /// Returns what is seen in that view, in which observe() and step() then see until the next reset(). The oracle reads
   /// its places off that picture as if it were the usual one: a moved camera leads the oracle astray as far as the
   /// picture moved. Actions are carried out as ever. @throws InputError unless EnvironmentType::has_views().
-  virtual Observation look(const View& /*view*/) { throw InputError("environment: it has its usual view alone"); }
+  virtual Observation look(const View& /*view*/) { throw InputError("environment: it has one view only"); }
 
   /// Sets whether observations have Observation::shadows from now on. Pictures stay the same. @throws InputError where
   /// shadows are asked for and the environment has none.
   virtual void show_shadows(bool on) {
-    if (on) throw InputError("environment: its pictures have no shadows that are told apart");
+    if (on) throw InputError("environment: it does not report shadows");
   }
 
   /// Carries out the action until all is at rest. May be called again: the next action starts from the state reached
@@ -104,7 +104,7 @@ class Environment {
   /// Judges once more what the last step() led to. Without limits, the failure is that step's. @throws InputError where
   /// an environment has no limits to change.
   virtual Rejudged judged_again(const JudgeLimits& /*limits*/) const {
-    throw InputError("environment: it is judged by the protocol's limits alone");
+    throw InputError("environment: its judge has no limits to change");
   }
 };
 

@@ -24,7 +24,7 @@ namespace {
 }
 
 [[noreturn]] void refuse_link(const fs::path& file) {
-  throw InputError(fmt::format("{}: a symbolic link; a run holds none", file.string()));
+  throw InputError(fmt::format("{}: a symbolic link, which a run may not hold", file.string()));
 }
 
 // False, with errno set, if not all of it could be written.

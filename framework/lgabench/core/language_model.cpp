@@ -23,16 +23,16 @@ std::vector<Hypothesis> read_hypotheses(const JsonReader& reader, const FeatureS
 }
 
 Meaning LanguageModel::mean(const Command& command, const FeatureSpace&) {
-  throw MethodError(model() + ": expected a source that says what \"" + command.utterance +
-                    "\" means in one answer (meaning=structured)");
+  throw MethodError(model() + ": cannot say in one answer what \"" + command.utterance +
+                    "\" means, as meaning=structured asks");
 }
 
 std::vector<Hypothesis> LanguageModel::hypotheses(const Command& command, const FeatureSpace&) {
-  throw MethodError(model() + ": expected a source that says what \"" + command.utterance + "\" leaves unsaid");
+  throw MethodError(model() + ": cannot say what \"" + command.utterance + "\" leaves unsaid");
 }
 
 bool HumanAnswers::accepts(const Command& command, const std::string&, const std::string&) {
-  throw MethodError("\"" + command.utterance + "\": expected people who say of an object whether they would take it");
+  throw MethodError("\"" + command.utterance + "\": these people cannot say of one object whether they would take it");
 }
 
 namespace {

@@ -45,7 +45,7 @@ const PerturbationAxis* find_axis(const PluginAxes& axes, const std::string& id)
 EpisodePart perceived_part(const JsonReader& name) {
   for (const EpisodePart part : {EpisodePart::rgb, EpisodePart::ids, EpisodePart::instances})
     if (name.string() == part_names.at(static_cast<std::size_t>(part))) return part;
-  name.fail("rgb, ids or instances, the parts of what is perceived");
+  name.fail("rgb, ids or instances, the parts of an observation");
 }
 
 std::vector<EpisodePart> perceived_parts(const JsonReader& list) {
@@ -106,14 +106,14 @@ Json axis_json(const PerturbationAxis& axis) {
 PerturbationAxis read_axis(const std::string& id, const JsonReader& reader) {
   reader.only({"version", "levels", "changes", "may_change", "named"});
   PerturbationAxis axis{id, reader.at("levels").strings(), perceived_parts(reader.at("changes"))};
-  if (axis.levels.empty()) reader.at("levels").fail("what each level is, from the first");
+  if (axis.levels.empty()) reader.at("levels").fail("a description of each level, from level 1");
   if (axis.changes.empty()) reader.at("changes").fail("at least one part");
   if (reader.has("may_change")) axis.may_change = perceived_parts(reader.at("may_change"));
   if (reader.has("named")) axis.named = reader.at("named").boolean();
   axis.of_plugin = true;
   if (reader.has("version")) axis.version = reader.at("version").string();
   axis.perceive = [id](const Observation&, const Scenario&, int, const RandomStream&) -> Observation {
-    throw InputError(fmt::format("perturbation {}: a plugin's, whose process only cells of a run have", id));
+    throw InputError(fmt::format("perturbation {}: its plugin runs only in the cells of a run", id));
   };
   return axis;
 }
@@ -224,7 +224,7 @@ void expect_shown(const JsonReader& perturbation, const std::vector<const Pertur
                   const std::string& environment, bool has_views) {
   for (const PerturbationAxis* axis : axes)
     if (axis->look && !has_views)
-      perturbation.fail(fmt::format("an axis that leaves the view as it is ({} does not): environment {} has one alone",
+      perturbation.fail(fmt::format("an axis that keeps the view ({} changes it): environment {} has only one",
                                     axis->id, environment));
 }
 

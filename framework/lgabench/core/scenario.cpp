@@ -55,10 +55,11 @@ void expect_wordings(const JsonReader& commands, const Scenario& scenario) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const ScenarioCommand& command = scenario.commands[i];
     if (command.wording == 0) continue;
-    if (scenario.commands_of("train") != std::vector<int>{0}) all[i].at("wording").fail("one seen command, the first");
+    if (scenario.commands_of("train") != std::vector<int>{0})
+      all[i].at("wording").fail("the first command as the only seen one");
     if (std::count(seen.begin(), seen.end(), command.wording) > 0) all[i].at("wording").fail("each level once");
     if (distribution_json(command.truth) != distribution_json(scenario.commands.front().truth))
-      all[i].at("truth").fail("the truth of the command that this is another wording of");
+      all[i].at("truth").fail("the truth of the first command, which this one rewords");
     seen.push_back(command.wording);
   }
 }
@@ -84,7 +85,7 @@ void expect_arms(const JsonReader& commands, const Scenario& scenario) {
     if (all[i].has("arm") && !added && std::count(unseen.begin(), unseen.end(), command.arm) == 0)
       all[i].at("arm").fail(fmt::format("an arm with \"unseen\": true ({})", fmt::join(unseen, ", ")));
     if (command.truth.target.empty() != added)
-      all[i].at("truth").fail(added ? "nothing, of words without a meaning"
+      all[i].at("truth").fail(added ? "an empty set: these words have no meaning"
                                     : "at least one object type and one texture");
   }
 }
@@ -147,9 +148,9 @@ Arm read_arm(const JsonReader& reader, std::vector<std::string> members, const P
 // An arm is compared with its control scene by scene, so that nothing else may differ.
 void expect_control(const JsonReader& file, const JsonReader& arm) {
   Json control = file.at("tests").elements().front().json(), same = arm.json();
-  if (control.contains("perturbation")) arm.at("perturbation").fail("a first arm without one, its control");
+  if (control.contains("perturbation")) arm.at("perturbation").fail("a first arm without a perturbation, its control");
   for (const char* own : {"arm", "perturbation"}) control.erase(own), same.erase(own);
-  if (control != same) arm.at("perturbation").fail("the members of the first arm, its control, beside it");
+  if (control != same) arm.at("perturbation").fail("the other members of the first arm, its control");
 }
 
 // What of its scenes, and of its command, an arm's perturbation changes.

@@ -43,7 +43,8 @@ void add_own(std::map<std::string, fs::path>& files, const std::string& id, cons
   const auto [there, is_new] = files.emplace(id, file);
   std::error_code none_to_compare;
   if (!is_new && !fs::equivalent(there->second, file, none_to_compare))
-    throw InputError(fmt::format("{}: expected another id: {} has it", file.string(), there->second.string()));
+    throw InputError(
+        fmt::format("{}: expected another id, since {} has this one", file.string(), there->second.string()));
 }
 
 }  // namespace

@@ -31,8 +31,8 @@ void expect_all_commands(const RecordedAnswers& answers, const std::vector<std::
   }
   if (!lacking.empty())
     throw InputError(fmt::format(
-        "--answers {}: expected answers for {}; there are those for: {}. Others: --answers cassette:FILE or "
-        "openai (docs/language-models.md); with methods that ask no language model: --answers {}",
+        "--answers {}: expected answers for {}; it has those for: {}. Give --answers cassette:FILE or openai "
+        "(docs/language-models.md), or, with methods that ask no language model, --answers {}",
         answers.source, fmt::join(lacking, ", "), fmt::join(known, " | "), to_string(NoAnswers())));
 }
 
@@ -52,8 +52,8 @@ void keep_answers(const std::vector<AnswerFile>& files, const fs::path& run) {
     const fs::path to = run / "answers" / file.name;
     const std::string bytes = read_file(file.path);
     if (sha256(bytes) != to.stem().string())
-      throw InputError(fmt::format("{}: changed since it was read, or does not have the bytes that its name says",
-                                   file.path.string()));
+      throw InputError(
+          fmt::format("{}: changed since it was read, or its SHA-256 is not the one in its name", file.path.string()));
     if (!fs::exists(to) || read_file(to) != bytes) write_file(to, bytes);
   }
 }
@@ -179,10 +179,10 @@ std::vector<AnswerFile> read_participants(const fs::path& directory, bool rehear
     Participant participant = read_participant(file);
     for (const Participant& other : all)
       if (other.id == participant.id)
-        throw InputError(
-            fmt::format("{}: /participant: \"{}\" has another file there, expected one each", file.string(), other.id));
+        throw InputError(fmt::format("{}: /participant: \"{}\" has a second file there, expected one a person",
+                                     file.string(), other.id));
     if (participant.rehearsal && !rehearsal)
-      throw InputError(fmt::format("{}: /rehearsal: no person's answers; --rehearsal runs on them, and marks the run",
+      throw InputError(fmt::format("{}: /rehearsal: answers of a rehearsal; --rehearsal runs on them and marks the run",
                                    file.string()));
     participant.rehearsal = rehearsal;
     files.push_back({participant.sha256 + ".json", file, {{"participant", participant.id}}});

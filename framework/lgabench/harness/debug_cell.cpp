@@ -29,10 +29,11 @@ std::string on_path(const std::string& program) {
 std::vector<std::string> gdb() {
   const std::string program = on_path("gdb");
   if (program.empty())
-    throw InputError(fmt::format(
-        "--debug: gdb is not there (Debian: apt-get install gdb); with it this command starts the method's process as\n"
-        "  gdb -q -ex 'set breakpoint pending on' --args {}",
-        (program_directory() / "lgabench-method").string()));
+    throw InputError(
+        fmt::format("--debug: gdb is not installed (Debian: apt-get install gdb); with it this command starts the "
+                    "method's process as\n"
+                    "  gdb -q -ex 'set breakpoint pending on' --args {}",
+                    (program_directory() / "lgabench-method").string()));
   return {program, "-q", "-ex", "set breakpoint pending on", "--args"};
 }
 
@@ -47,7 +48,7 @@ const Cell& named(const std::vector<Cell>& cells, const std::string& key_begin) 
   }
   if (count != 1)
     throw InputError(
-        fmt::format("--debug {}: {} of the run's cells begin so, expected one of{}", key_begin, count, all));
+        fmt::format("--debug {}: {} of the run's cell keys begin so, expected one of{}", key_begin, count, all));
   return *found;
 }
 
@@ -67,7 +68,7 @@ int debug_cell(RunPlan plan, const Catalogue& catalogue, const std::string& key)
       cell_job(plan, catalogue, cell, scratch.path / "cell", scratch.path / "answers", scratch.path / "method");
   job.limits = Limits();  // a person has time
   job.debugger = debugger;
-  to_stderr("{}\nthe method runs as you, with your files; {}; nothing is kept\n", cell.title(),
+  to_stderr("{}\nthe method runs unconfined, with your rights; {}; no result is kept\n", cell.title(),
             python ? "breakpoint() in the file stops there"
                    : "set breakpoints (break MyMethod::select), then run; quit ends the cell");
   return run_in_foreground(to_json(job));

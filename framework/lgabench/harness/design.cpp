@@ -63,9 +63,8 @@ TrainOn train_on_of(const JsonReader& reader) {
   if (!contains(all, through.axis))
     throw InputError(fmt::format("{}: {}: {}", reader.file(), reader.place(), none_named("axis", through.axis, some)));
   if (!contains(some, through.axis))
-    throw InputError(
-        fmt::format("{}: {}: expected an axis that changes what is perceived and nothing else ({}), got {}",
-                    reader.file(), reader.place(), fmt::join(some, ", "), through.axis));
+    throw InputError(fmt::format("{}: {}: expected an axis that changes only the observation ({}), got {}",
+                                 reader.file(), reader.place(), fmt::join(some, ", "), through.axis));
   if (through.level) read_perturbation(reader);  // which refuses a level that the axis lacks
   return through;
 }

@@ -36,8 +36,7 @@ void expect_each_method(const std::vector<Competitor>& methods, const std::vecto
     if (std::none_of(cells.begin(), cells.end(), [&](const Cell& c) {
           return c.method.name == method.name + c.selection_errors.suffix() + c.reading.suffix();
         }))
-      throw InputError(
-          fmt::format("--humans: expected answers for {} in a scenario of this run, there are none", method.name));
+      throw InputError(fmt::format("--humans: no person answered for {} in a scenario of this run", method.name));
 }
 
 // Which members of a meaning are seen is each training seed's own.
@@ -46,8 +45,8 @@ void expect_own_scenes(const Suite& suite, const Design& design, const Scenario&
   if (design.test_scenes != TestScenes::per_seed &&
       std::any_of(arms.begin(), arms.end(), [](const Json& arm) { return arm.contains("members"); }))
     throw InputError(
-        fmt::format("{}: /test_scenes: expected per_seed beside \"members\", of which each training seed "
-                    "shows its own",
+        fmt::format("{}: /test_scenes: expected per_seed, since \"members\" gives each training seed "
+                    "scenes of its own",
                     suite.file));
 }
 

@@ -72,7 +72,7 @@ void expect_same_programs(const Part& first, const Part& other) {
   if (!same_cells(version, other_version))
     refuse(first, other, fmt::format("one is of lgabench {}, one of {}", version, other_version));
   for (const auto& [program, hash] : first.programs().items())
-    if (other.programs().value(program, hash) != hash) refuse(first, other, "other builds of " + program);
+    if (other.programs().value(program, hash) != hash) refuse(first, other, "different builds of " + program);
 }
 
 // Adds to a list of `all` what `more` has beyond it.
@@ -152,7 +152,7 @@ void expect_same_results(const fs::path& one, const fs::path& other) {
   for (const char* file : result_files)
     if (read_file(one / file) != read_file(other / file))
       throw InputError(
-          fmt::format("{} and {}: other results of one cell: {} differs", one.string(), other.string(), file));
+          fmt::format("{} and {}: different results of one cell: {} differs", one.string(), other.string(), file));
 }
 
 // The cell to take: a finished one, else a failed one, else none; `left_out`: the keys of those that are not as they
@@ -194,8 +194,8 @@ void expect_one_of_each(const Candidate& here, const Json& settings, std::map<st
                                 here.directory.string(), cell.title(), fmt::join(differing(one, other), ", "));
   if (!options.empty())
     say += fmt::format(
-        " ({}): a row that a run has alone of its method is named by the method; give these rows to one run, "
-        "--methods {}, whose names tell them apart",
+        " ({}): a run names the only row of a method by its id; give these rows to one run, --methods {}, "
+        "whose names tell them apart",
         fmt::join(options, ", "), fmt::join(JsonReader(settings, "run.json: /request").at("methods").strings(), ","));
   throw InputError(say);
 }
@@ -207,8 +207,9 @@ void expect_one_python(const Candidate& here, std::map<std::string, std::pair<Js
   const std::string& method = here.cell.method.id;
   const auto& [python, first] = known.try_emplace(method, here.state.build.at("python"), here.directory).first->second;
   if (python != here.state.build.at("python"))
-    throw InputError(fmt::format("{} and {}: other builds of method {}: their interpreter, packages or modules differ",
-                                 first.string(), here.directory.string(), method));
+    throw InputError(
+        fmt::format("{} and {}: different builds of method {}: their interpreter, packages or modules differ",
+                    first.string(), here.directory.string(), method));
 }
 
 bool asks_live(const Part& part) {
@@ -229,8 +230,8 @@ const Part& with_all_replies(const std::vector<Part>& parts) {
   for (const Part& part : parts)
     if (bytes(part) > 0 && !holds_lines(kept_replies(all->path())->path, kept_replies(part.path())->path))
       throw InputError(fmt::format(
-          "{} and {}: a language model was asked the same twice, on two cassettes; fill one with lgabench select "
-          "--suite, and give it to the parts as --answers cassette:FILE",
+          "{} and {}: a language model was asked the same questions for two cassettes; fill one with lgabench "
+          "select --suite, and give it to the parts as --answers cassette:FILE",
           all->path().string(), part.path().string()));
   return *all;
 }
@@ -248,8 +249,8 @@ RunRecord merged_record(RunRecord all, const std::vector<Part>& parts, const Jso
     all.started = std::min(all.started, one.started);
     if (one.confinement == unconfined_run) all.confinement = unconfined_run;
     if (one.processor() != all.processor())
-      to_stderr("{}: computed on {}, {} on {}: its bits may differ from one machine's\n", part.path().string(),
-                one.processor(), parts.front().path().string(), all.processor());
+      to_stderr("{}: computed on {}, {} on {}; the merged run may not be bit-identical to one machine's\n",
+                part.path().string(), one.processor(), parts.front().path().string(), all.processor());
   }
   return all;
 }
@@ -276,7 +277,7 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
   for (const fs::path& run : runs) {
     std::error_code not_there;
     if (fs::equivalent(run, out, not_there))
-      throw InputError(fmt::format("{}: both to be read and to be written; expected another OUT", out.string()));
+      throw InputError(fmt::format("{}: both an input and OUT; choose another OUT", out.string()));
     parts.emplace_back(run);
     for (const Part& part : parts) expect_same_programs(part, parts.back());  // the first may lack what two others have
   }

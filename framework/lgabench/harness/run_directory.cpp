@@ -53,8 +53,8 @@ bool holds_cells(const fs::path& directory, const std::vector<std::string>& want
 void expect_taken_up(const fs::path& path, const RunRecord& run, Existing existing) {
   if (is_run(path) || (existing == Existing::resume && holds_cells(path, run.cells))) return;
   throw InputError(fmt::format(
-      holds_cells(path) ? "{}: cells without their run.json; the command that computed them, with --resume, writes it "
-                          "again"
+      holds_cells(path) ? "{}: cells without their run.json; repeat the command that computed them, with --resume, "
+                          "to write it"
                         : "{}: not empty and not a run (no run.json); nothing was written",
       path.string()));
 }
@@ -144,10 +144,9 @@ RunDirectory::RunDirectory(const fs::path& path, const RunRecord& run, Existing 
     } else if (is_run(path)) {
       there = read_run_record(path);
       if (!same_cells(there.version, run.version))
-        throw InputError(fmt::format(
-            "{}: a run of lgabench {}, whose cells {} cannot go on with; choose another --out, or --fresh to "
-            "drop it",
-            path.string(), there.version, run.version));
+        throw InputError(
+            fmt::format("{}: a run of lgabench {}, which {} cannot resume; choose another --out, or --fresh to drop it",
+                        path.string(), there.version, run.version));
       if (there.cells != run.cells)
         throw InputError(fmt::format("{}: holds another run ({}); choose another --out, or --fresh to drop it",
                                      path.string(), difference(there, run)));

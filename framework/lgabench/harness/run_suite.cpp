@@ -33,8 +33,8 @@ std::optional<std::uint32_t> order_of(const RunPlan& plan) {
 void expect_replies_of(const RunPlan& plan) {
   const std::optional<AnswerFile> kept = kept_replies(plan.out);
   if (kept && (!fs::exists(plan.live->cassette) || !holds_lines(plan.live->cassette, kept->path)))
-    throw InputError(fmt::format("{}: lacks replies that {} is based on; they are in {}: copy that file there",
-                                 plan.live->cassette.string(), plan.out.string(), kept->path.string()));
+    throw InputError(fmt::format("{}: lacks replies that the run {} used; copy {} there", plan.live->cassette.string(),
+                                 plan.out.string(), kept->path.string()));
 }
 
 // What the model said until now goes with the run. A full disk costs the copy, not the cells.
@@ -175,7 +175,7 @@ class Run {
     if (!plan_.quiet)
       put(stderr,
           painted(stderr, is_long ? Colour::yellow : Colour::bold, expected.text(plan_.pool.jobs, plan_.purpose)) +
-              (is_long && plan_.purpose.empty() ? "; --dry-run shows of what\n" : "\n"));
+              (is_long && plan_.purpose.empty() ? "; --dry-run shows it by row\n" : "\n"));
     if (plan_.purpose.empty()) warn_of_disks(plan_, expected.run_bytes);
   }
 

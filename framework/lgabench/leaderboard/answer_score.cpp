@@ -70,7 +70,7 @@ Json score_of_answers(const Installed& installed, const Competitor& row, const A
                       const fs::path& file) {
   if (row.is_reference() || row.id != "lga") return nullptr;
   if (!file.empty() && sha256_file(file) != file.stem())
-    throw InputError(file.string() + ": does not have the bytes that its name says");
+    throw InputError(file.string() + ": its SHA-256 is not the one in its name");
   return scored(installed, row.options.value("meaning", "flat"), {answers, file});
 }
 

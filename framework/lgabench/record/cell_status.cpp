@@ -64,7 +64,7 @@ CellState cell_state(const fs::path& cell, const std::string& key, const Json& b
   std::error_code not_there;
   if (!fs::exists(cell, not_there)) return state;
   const auto not_its_own = [&](const fs::path& file) {
-    state.why = fmt::format("{} does not have the bytes that were written", file.string());
+    state.why = fmt::format("{} changed since it was written", file.string());
     return state;
   };
   try {

@@ -22,7 +22,7 @@ KeptPolicy read_kept_policy(const std::filesystem::path& cell) {
     throw InputError(fmt::format("{}: not there; `lgabench run --keep-policy` keeps policies", file.string()));
   const std::string text = read_file(file, Links::refused, most);
   const std::size_t end = text.find('\n');
-  const std::string damaged = file.string() + ": not as it was written";
+  const std::string damaged = file.string() + ": changed or cut off since it was written";
   if (end == std::string::npos || end > 1000) throw InputError(damaged);
   const Json head = parse_json(text.substr(0, end), file.string());
   const JsonReader reader(head, file.string());

@@ -51,8 +51,8 @@ void fields(RunRecord& record, Fields& field) {
   const JsonReader* const reader = field.reading();
   field("version", record.version);
   if (const std::string old = series(record.version); reader && (old == "0.1" || old == "0.2"))
-    throw InputError(fmt::format("{}: of lgabench {}, whose runs {} does not read", reader->file(), record.version,
-                                 LGABENCH_VERSION));
+    throw InputError(fmt::format("{}: written by lgabench {}, whose runs {} cannot read", reader->file(),
+                                 record.version, LGABENCH_VERSION));
   field("suite", record.suite);
   field("preset", record.preset, may_lack());
   field("smoke", record.smoke);

@@ -57,7 +57,7 @@ def load_run(directory: Path, verify: bool = True) -> Run:
     root = pathlib.Path(directory)
     run = json.loads(_read(root / "run.json"))
     if run["version"].startswith(("0.1.", "0.2.")):
-        raise ValueError(f"{root / 'run.json'}: of lgabench {run['version']}, whose runs this version does not read")
+        raise ValueError(f"{root / 'run.json'}: written by lgabench {run['version']}, whose runs this version cannot read")
     cells: list[dict[str, Any]] = []
     episodes: list[dict[str, Any]] = []
     training: list[dict[str, Any]] = []
@@ -71,7 +71,7 @@ def load_run(directory: Path, verify: bool = True) -> Run:
             failed[key] = "not played yet"
             continue
         if (root / "cells").is_symlink() or folder.is_symlink():
-            raise ValueError(f"{folder}: a symbolic link; a run holds none")
+            raise ValueError(f"{folder}: a symbolic link, which a run may not hold")
         status = json.loads(_read(folder / "status.json"))
         if status["state"] != "ok":
             failed[key] = str(status.get("reason", status["state"]))
@@ -80,7 +80,7 @@ def load_run(directory: Path, verify: bool = True) -> Run:
                  for name in ("cell.json", "selection.json", "training.jsonl", "episodes.jsonl", "timing.json")}
         for name, data in files.items():
             if verify and hashlib.sha256(data).hexdigest() != status["files"].get(name):
-                raise ValueError(f"{folder / name}: not as it was written: its SHA-256 is not that of status.json")
+                raise ValueError(f"{folder / name}: changed since it was written: its SHA-256 is not that in status.json")
         cell = json.loads(files["cell.json"])
         setting = _setting(key, cell)
         selected = json.loads(files["selection.json"])["commands"]
