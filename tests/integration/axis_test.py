@@ -101,7 +101,7 @@ class PluginAxes(case.Case):
         self.assertEqual(said.count("\nbit-identical "), 2, said)
 
     def test_an_axis_that_is_not_as_it_declares_fails_its_cell(self):
-        self.assertIn("at level 2: rgb is the control's in 2 of 2 episodes, where the axis declares a change: it is dead",
+        self.assertIn("at level 2: rgb equals the control's in 2 of 2 episodes, though the axis declares a change",
                       self.failure(2))
         self.assertIn("at level 3: ids differs from the control's in episode 0, which the axis does not declare",
                       self.failure(3, "--fresh"))
@@ -109,7 +109,7 @@ class PluginAxes(case.Case):
     def test_what_fails_costs_its_own_cell(self):
         for level, reason in ((4, "level 4): its own failure"), (5, "level 5): signal 11 (Segmentation fault)"),
                               (7, "level 7): perceive() returned 3 bytes of rgb and 32768 of ids, expected 98304 and 32768"),
-                              (8, "level 8): ids: 200, expected 0 or an instance's"),
+                              (8, "level 8): ids: 200, expected 0 or the id of an instance"),
                               (9, 'level 9): instance ')):
             self.assertIn(reason, self.failure(level, "--fresh"))
 
@@ -123,9 +123,9 @@ class PluginAxes(case.Case):
 
     @unittest.skipUnless(HAS_NUMPY, f"{PYTHON} has no NumPy")
     def test_what_fails_in_python(self):
-        for level, reason in ((2, "it is dead"), (3, "ids differs"), (4, "RuntimeError: its own failure (fog.py:17)"),
+        for level, reason in ((2, "though the axis declares a change"), (3, "ids differs"), (4, "RuntimeError: its own failure (fog.py:17)"),
                               (5, "perceive() returned rgb as int64 of shape (128, 256, 3), expected uint8 of shape (128, 256, 3)"),
-                              (6, "ids: 200, expected 0 or an instance's")):
+                              (6, "ids: 200, expected 0 or the id of an instance")):
             self.assertIn(reason, self.failure(level, "--fresh", plugin="fog.py:Axis"))
 
     def test_what_there_is_not_is_refused_in_a_line(self):
@@ -171,8 +171,8 @@ class PluginAxes(case.Case):
                                           expect=1).stdout)
             found = {finding["check"]: (finding["state"], finding["detail"]) for finding in report["findings"]}
             self.assertEqual(found["level 1, tabletop"][0], "ok")
-            self.assertEqual(found["level 2, tabletop"], ("problem", "rgb changes in 0 of 20 scenes: it is dead"))
-            self.assertEqual(found["level 3, tabletop"], ("problem", "ids changes, which is not declared"))
+            self.assertEqual(found["level 2, tabletop"], ("problem", "rgb is declared and changes in only 0 of 20 scenes"))
+            self.assertEqual(found["level 3, tabletop"], ("problem", "ids changes and is not declared"))
             self.assertEqual(found["level 4, tabletop"], ("problem", "RuntimeError: its own failure (fog.py:17)"))
             self.assertEqual(found["two processes"][0], "ok")
 

@@ -96,7 +96,7 @@ class CheckPlugin(Case):
         (self.dir / "m.py").write_text(SELECTS)
         report = json.loads(self.call("check-plugin", "m.py:Selects", "--json", "--python", PYTHON).stdout)
         found = {finding["check"]: finding["detail"] for finding in report["findings"]}
-        self.assertEqual(found["learn"], "none: it selects alone, as --methods selected_by:m asks it to")
+        self.assertEqual(found["learn"], "none: the method only selects, as --methods selected_by:m asks")
 
     def test_people_are_asked_in_scenes_as_often_as_the_option_says(self):
         (self.dir / "mine.py").write_text(SELECTS)

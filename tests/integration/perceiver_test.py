@@ -105,7 +105,7 @@ class Perceivers(case.Case):
     def test_what_fails_costs_its_own_cell(self):
         for way, reason in (("throws", "fixture_reader (perceiver): its own failure"), ("crashes", "signal 11 (Segmentation fault)"),
                             ("wrong size", "read() returned 3 bytes of rgb and 32768 of ids, expected 98304 and 32768"),
-                            ("unknown id", "ids: 200, expected 0 or an instance's"), ("unknown name", 'no texture "of glass"'),
+                            ("unknown id", "ids: 200, expected 0 or the id of an instance"), ("unknown name", 'no texture "of glass"'),
                             ("two names", "expected each once, and not 0"), ("truth", "scenario: EACCES")):
             with self.subTest(way):
                 self.assertIn(reason, self.failure(way))

@@ -112,7 +112,7 @@ class Verify(BesideOneRun):
                 (self.cell / "status.json").write_bytes(status)
                 forge()
                 said = self.verify("--all", expect=1).stdout
-                self.assertRegex(self.line_of_the_cell(said), r"^other outcomes .*succeeded there, ")
+                self.assertRegex(self.line_of_the_cell(said), r"^other outcomes .*succeeded in the record, ")
                 self.assertIn("NOT bit-identical: 1 of 5 cells; 1 of 20 episodes", said)
                 self.assertIn("its own word, which proves nothing", said)
                 self.assertEqual(said.splitlines()[-1], "verdict: differs")

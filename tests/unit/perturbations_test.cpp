@@ -106,7 +106,7 @@ TEST(Perturbations, ADeadAxisIsCaught) {
         return seen;
       }};
   EXPECT_SAYS(message_of<EngineError>([&] { expect_as_declared(dead, 1); }),
-              "perturbation dead at level 1: rgb is the control's in 5 of 5 episodes");
+              "perturbation dead at level 1: rgb equals the control's in 5 of 5 episodes");
 }
 
 TEST(Perturbations, ALeakingAxisIsCaught) {
@@ -127,7 +127,7 @@ TEST(Perturbations, APluginIsAtFaultForItsOwnAxis) {
       }};
   dead.of_plugin = true;
   EXPECT_SAYS(message_of<MethodError>([&] { expect_as_declared(dead, 1); }),
-              "plugin dead (perturbation): perturbation dead at level 1: rgb is the control's in 5 of 5 episodes");
+              "plugin dead (perturbation): perturbation dead at level 1: rgb equals the control's in 5 of 5 episodes");
 }
 
 TEST(Perturbations, WhatAPluginMakesOfAPictureIsLookedAt) {
@@ -139,8 +139,8 @@ TEST(Perturbations, WhatAPluginMakesOfAPictureIsLookedAt) {
     return message_of<MethodError>([&] { expect_perceived(changed, scenario.space); });
   };
   EXPECT_NO_THROW(expect_perceived(seen, scenario.space));
-  EXPECT_SAYS(refusal([](Observation& o) { o.ids.front() = 200; }), "ids: 200, expected 0 or an instance's");
-  EXPECT_SAYS(refusal([](Observation& o) { o.instances.pop_back(); }), "expected 0 or an instance's");
+  EXPECT_SAYS(refusal([](Observation& o) { o.ids.front() = 200; }), "ids: 200, expected 0 or the id of an instance");
+  EXPECT_SAYS(refusal([](Observation& o) { o.instances.pop_back(); }), "expected 0 or the id of an instance");
   EXPECT_SAYS(refusal([](Observation& o) { o.instances.back().id = o.instances.front().id; }), "expected each once");
   EXPECT_SAYS(refusal([](Observation& o) { o.instances.front().object_type = "ghost"; }), "no object type \"ghost\"");
   EXPECT_SAYS(refusal([](Observation& o) { o.instances.front().texture = "glass"; }), "no texture \"glass\"");

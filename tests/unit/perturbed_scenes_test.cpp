@@ -114,7 +114,7 @@ TEST(PerturbedScenes, AnEngineThatIgnoresFrictionAndMassIsCaught) {
   EXPECT_SAYS(message_of<EngineError>([&] {
                 expect_declared(noted(scenario, std::make_unique<Careless>()), {}, false, axes_in(scenario));
               }),
-              "perturbation friction_mass at level 1: physics is the control's in 8 of 8 episodes");
+              "perturbation friction_mass at level 1: physics equals the control's in 8 of 8 episodes");
 }
 
 struct Shifting : ForwardingWorld {  // what is heavy

@@ -296,7 +296,7 @@ TEST(CompareCells, OtherBytesNeedAnExcuse) {
 TEST(CompareCells, OtherOutcomesAreCounted) {
   const report::CellAgreement other = agreement({"lga", 15}, {"lga", 11}, true);
   EXPECT_EQ(other.agreement, Agreement::other_outcomes);
-  EXPECT_SAYS(other.detail, "arm test: 15 of 20 succeeded there, 11 here, 4 episodes ended differently");
+  EXPECT_SAYS(other.detail, "arm test: 15 of 20 succeeded in the record, 11 recomputed, 4 episodes ended differently");
   EXPECT_SAYS(other.detail, "from episodes.jsonl line 12");
   EXPECT_EQ(other.episodes, 20);
 

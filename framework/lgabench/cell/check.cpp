@@ -37,8 +37,8 @@ void judge_leftovers(CheckReport& report, const std::function<ProcessState()>& n
   const std::vector<std::string> threads = left_behind([&] { return (state = now()).threads; });
   report.judge("threads", threads.empty() ? "" : fmt::format("left running: {}", fmt::join(names_of(threads), ", ")),
                "none left behind",
-               "join every thread before the call that started it returns, or in the destructor; a library's own pool "
-               "is kept small by its settings (one thread)");
+               "join every thread before the call that started it returns, or in the destructor; set a library's "
+               "own pool to one thread");
   const auto& files = state.descriptors;
   report.judge("descriptors", files.empty() ? "" : fmt::format("left open: {}", fmt::join(files, ", ")),
                "none left open", "close every file and socket, or hold it in an object that does");

@@ -92,7 +92,7 @@ std::string judge_task(const TaskInfo& task_info, const PluginInfo& engine, Chec
   report.judge("reset, " + task, differs, "pure: scenes in reverse order end alike, bit for bit",
                "reset() must drop all state of the solver: warm starts, contacts, velocities, the grip");
   report.judge("memory, " + task, grown > 4096 ? fmt::format("grows by {} bytes an episode", grown) : "",
-               "does not grow", "reset() must give back what the last episode took");
+               "does not grow", "reset() must free the memory of the last episode");
   return all;
 }
 

@@ -32,8 +32,7 @@ namespace {
 constexpr int demonstrations = 10, scenes_an_arm = 5;
 constexpr std::uint64_t seed = 7;
 constexpr const char* determinism =
-    "draw what is random from services.seed; let no clock, no address, no value that was never set and no number of "
-    "threads have a part in it";
+    "draw all random numbers from services.seed; use no clock, address, uninitialised value or number of threads";
 
 // Counts what is asked; or answers no to everything, as a model that sees nothing fitting would.
 class CountingModel : public LanguageModel {
@@ -193,7 +192,8 @@ void judge_restored(const HostJob& job, const Kept& kept, const Bench& bench, Ch
   } catch (const std::exception& e) {
     fault = e.what();
   }
-  report.judge("saved policy", fault, fmt::format("{} bytes, of which another process acts alike", kept.bytes->size()),
+  report.judge("saved policy", fault,
+               fmt::format("{} bytes, from which another process acts alike", kept.bytes->size()),
                "saved() must hold all that act() depends on, and restore() must bring it back");
 }
 
@@ -279,7 +279,7 @@ class MethodCheck {
       report_.ok("system calls", "none refused");
     else
       report_.note("system calls", fmt::format("refused: {}", fmt::join(names, ", ")),
-                   "a method's process has those of the list in docs/trust.md alone; bear it, or do without");
+                   "a method may make only the calls listed in docs/trust.md; handle the refusal, or avoid the call");
   }
 
   long long heap_bytes() const { return is_library() ? method_.state().heap_bytes : 0; }
@@ -316,7 +316,7 @@ class MethodCheck {
       if (!is_library() && job_.plugin.python.value("selects_alone", false)) {
         if (first)
           report_.ok("learn",
-                     fmt::format("none: it selects alone, as --methods {}{} asks it to", selected_by, job_.plugin.id));
+                     fmt::format("none: the method only selects, as --methods {}{} asks", selected_by, job_.plugin.id));
         begin("destroy the method");
         method_.drop_method();
         continue;
@@ -368,7 +368,7 @@ class MethodCheck {
                    fmt::format("select() returned nothing that can be shown for {}: a run ends this cell as "
                                "abstraction_empty, and learn() and act() were not tried on it",
                                bench.scenario.id),
-                   "give options with which select() finds something here, or run it where it does");
+                   "give options with which select() finds something here, or name another environment");
   }
 
   std::unique_ptr<Policy> learn_from(const Bench& bench, Answering& asked, Selected& selected,
@@ -482,7 +482,7 @@ class MethodCheck {
 
   void judge_repetition(const Use& first, const Use& second, long long grown) {
     const auto same = [&](const char* check, const std::string& a, const std::string& b) {
-      report_.judge(fmt::format("same {}", check), a == b ? "" : "others the second time, with the same seed",
+      report_.judge(fmt::format("same {}", check), a == b ? "" : "different the second time, with the same seed",
                     "twice in one process, bit for bit", determinism);
       report_.hashes[check] = sha256(a);
     };

@@ -75,7 +75,7 @@ void judge_process(HostedPerturbation& process, bool is_library, CheckReport& re
   const std::vector<std::string> refused = process.refused_calls();
   if (!refused.empty())
     report.note("system calls", fmt::format("refused: {}", fmt::join(refused, ", ")),
-                "a plugin's process has those of the list in docs/trust.md alone; bear it, or do without");
+                "a plugin may make only the calls listed in docs/trust.md; handle the refusal, or avoid the call");
 }
 
 // One axis in one environment.
@@ -136,17 +136,17 @@ class AxisCheck {
       const int n = changed[static_cast<std::size_t>(part)];
       const char* name = part_names[static_cast<std::size_t>(part)];
       const bool must = std::count(axis_.changes.begin(), axis_.changes.end(), part) > 0;
-      if (n > 0 && !axis_.touches(part)) faults.push_back(fmt::format("{} changes, which is not declared", name));
+      if (n > 0 && !axis_.touches(part)) faults.push_back(fmt::format("{} changes and is not declared", name));
       if (must && n < fewest_changed * scenes_a_level)
-        faults.push_back(fmt::format("{} changes in {} of {} scenes: it is dead", name, n, scenes_a_level));
+        faults.push_back(fmt::format("{} is declared and changes in only {} of {} scenes", name, n, scenes_a_level));
     }
     for (std::size_t i = scenes_.size(); i-- > 0;)
       if (perceived_bytes(perceive(scenes_[i], level)) != bytes[i]) {
-        faults.emplace_back("a scene seen again, in another order, is another picture");
+        faults.emplace_back("a scene seen again, in another order, gives another picture");
         break;
       }
     report_.judge(fmt::format("level {}{}", level, in_), fmt::format("{}", fmt::join(faults, "; ")),
-                  "changes what it declares, and the same again",
+                  "changes what it declares, bit-identical when repeated",
                   "declare in \"changes\" what differs in at least 95 % of scenes, in \"may_change\" what differs in "
                   "some; draw all that is random from the stream, and keep nothing from one call to the next");
     return fmt::format("{}\n", fmt::join(bytes, "\n"));
@@ -160,7 +160,8 @@ class AxisCheck {
     if (axis_.named || !axis_.touches(EpisodePart::rgb) || std::is_sorted(changes_.begin(), changes_.end()))
       report_.ok("sizes" + in_, detail);
     else
-      report_.note("sizes" + in_, detail, "a higher level should change more; levels without an order are \"named\"");
+      report_.note("sizes" + in_, detail,
+                   "a higher level should change more; declare levels without an order \"named\"");
   }
 
   const PerturbationAxis& axis_;
@@ -226,7 +227,7 @@ std::string read_scenes(const HostJob& job, const CheckPhase& phase, CheckReport
     for (std::size_t i = scenes.size(); same && i-- > 0;) same = perceived_bytes(read(scenes[i])) == bytes[i];
     report.judge(doing, same ? "" : "a picture seen again, in another order, has other names",
                  "the same picture has the same names again",
-                 "draw nothing, and keep nothing from one call to the next");
+                 "use no random numbers, and keep nothing from one call to the next");
     report.ok("names, " + job.environment, fmt::format("{} of {} objects as the simulator names them", right, objects));
   } catch (const MethodError& e) {
     report.problem(doing, e.what(), "this call must succeed: a run makes it too");

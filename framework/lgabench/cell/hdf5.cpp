@@ -20,7 +20,7 @@ using Sizes = std::vector<hsize_t>;
 class Handle {
  public:
   Handle(hid_t id, const std::string& file, const std::string& place) : id_(id) {
-    if (id < 0) throw InputError(fmt::format("{}: {}: cannot be opened or made by HDF5", file, place));
+    if (id < 0) throw InputError(fmt::format("{}: {}: HDF5 cannot open or create it", file, place));
   }
   ~Handle() {
     if (id_ >= 0) H5Idec_ref(id_);
@@ -40,7 +40,7 @@ class Library {
 
   Handle handle(hid_t id, const std::string& place) const { return {id, file_, place}; }
   void check(herr_t status, const std::string& place) const {
-    if (status < 0) fail(place, "cannot be read or written by HDF5");
+    if (status < 0) fail(place, "HDF5 cannot read or write it");
   }
   [[noreturn]] void fail(const std::string& place, const std::string& what) const {
     throw InputError(fmt::format("{}: {}: {}", file_, place, what));
@@ -312,9 +312,9 @@ std::string demonstrations_hdf5(const std::vector<Demonstration>& demonstrations
   }
   h5.check(H5Fflush(file, H5F_SCOPE_GLOBAL), "/");
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
-  if (size <= 0) h5.fail("/", "its image cannot be taken");
+  if (size <= 0) h5.fail("/", "HDF5 cannot give its bytes");
   std::string bytes(static_cast<std::size_t>(size), '\0');
-  if (H5Fget_file_image(file, bytes.data(), bytes.size()) != size) h5.fail("/", "its image cannot be taken");
+  if (H5Fget_file_image(file, bytes.data(), bytes.size()) != size) h5.fail("/", "HDF5 cannot give its bytes");
   return bytes;
 }
 

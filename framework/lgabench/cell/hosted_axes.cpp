@@ -20,7 +20,8 @@ namespace {
 const PluginInfo& plugin_of(const PerturbationAxis& axis, const CellJob& job) {
   const auto found =
       std::find_if(job.axes.begin(), job.axes.end(), [&axis](const PluginInfo& one) { return one.id == axis.id; });
-  if (found == job.axes.end()) throw PluginError(fmt::format("perturbation {}: its plugin is not there", axis.id));
+  if (found == job.axes.end())
+    throw PluginError(fmt::format("perturbation {}: the job names no plugin for it", axis.id));
   if (found->axis != axis_json(axis))
     throw PluginError(fmt::format("perturbation {}: {} declares {}, the scenario {}", axis.id, found->file.string(),
                                   canonical(found->axis), canonical(axis_json(axis))));
@@ -40,7 +41,7 @@ void expect_perceived(const Observation& seen, const FeatureSpace& space) {
       throw MethodError(fmt::format("instance {}: no texture \"{}\" in {}", one.id, one.texture, space.id));
   }
   for (const std::uint8_t id : seen.ids)
-    if (!listed.at(id)) throw MethodError(fmt::format("ids: {}, expected 0 or an instance's", id));
+    if (!listed.at(id)) throw MethodError(fmt::format("ids: {}, expected 0 or the id of an instance", id));
 }
 
 HostJob host_job(const CellJob& job, const PluginInfo& plugin, const Json& options, const fs::path& scratch) {
@@ -93,7 +94,7 @@ class CheckedPerceiver final : public Perceiver {
       expect_perceived(read, space);
       const std::string answer = hash_of(read);
       if (answers_.emplace(picture, answer).first->second != answer)
-        throw MethodError("another answer than before to the same picture");
+        throw MethodError("it read other names in the same picture than before");
       return read;
     });
   }
@@ -116,7 +117,7 @@ class CheckedPerceiver final : public Perceiver {
 ReadPicture reading_in(const Scenario& scenario, const CellJob& job) {
   if (job.cell.reading.plugin().empty()) return reading_of(scenario, job.cell.reading);
   if (!job.perceiver)
-    throw PluginError(fmt::format("perceiver {}: its plugin is not there", job.cell.reading.plugin()));
+    throw PluginError(fmt::format("perceiver {}: the job names no plugin for it", job.cell.reading.plugin()));
   const fs::path scratch = job.scratch / "perceiver";
   fs::create_directory(scratch);
   return reading_of(scenario, job.cell.reading, std::make_shared<CheckedPerceiver>(job, scratch));

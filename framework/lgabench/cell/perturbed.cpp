@@ -133,20 +133,20 @@ void expect_declared(const std::vector<PerturbedEpisode>& all, const std::vector
     };
     if (e.names != found->second->names && same(EpisodePart::rgb) && same(EpisodePart::ids) &&
         same(EpisodePart::instances))
-      throw MethodError(fmt::format("names read: others than in the control for the same picture, in episode {} of {}",
+      throw MethodError(fmt::format("names read: not those of the control for the same picture, in episode {} of {}",
                                     e.index, e.arm));
     constexpr auto input = static_cast<std::size_t>(EpisodePart::input);
     const auto one = acted.find({e.arm, e.index}), other = acted.find({found->second->arm, e.index});
     if (actions && e.hashes[input] == found->second->hashes[input] && one != acted.end() && other != acted.end() &&
         *one->second != *other->second)
-      throw MethodError(fmt::format("act(): another action than in the control for the same input, in episode {} of {}",
-                                    e.index, e.arm));
+      throw MethodError(
+          fmt::format("act(): not the action of the control for the same input, in episode {} of {}", e.index, e.arm));
   }
   for (const auto& [what, counts] : changed)
     if (counts.differing < fewest_changed * counts.of_all)
       fail(counts.axes,
-           fmt::format("perturbation {} at level {}: {} is the control's in {} of {} episodes, where the axis declares "
-                       "a change: it is dead",
+           fmt::format("perturbation {} at level {}: {} equals the control's in {} of {} episodes, though the axis "
+                       "declares a change",
                        std::get<0>(what), std::get<1>(what), part_names[std::get<2>(what)],
                        counts.of_all - counts.differing, counts.of_all));
 }

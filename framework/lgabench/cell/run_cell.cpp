@@ -250,7 +250,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   phases.begin("demonstrate");
   const auto environment = make_environment(scenario, load_engine(job.engine));
   if (selected.needs.shadows && cell.reading.segments != Reading::simulator)
-    throw MethodError("it asks for shadows, which only the simulator's segments have");
+    throw MethodError("needs() asks for shadows, which only the simulator's segmentation has");
   environment->show_shadows(selected.needs.shadows);
   auto demonstrations = instructed(cached_demonstrations(demonstration_cache(job, scenario), *environment, scenes,
                                                          selected.needs, scenario.utterances(), count),

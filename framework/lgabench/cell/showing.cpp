@@ -35,7 +35,7 @@ void Showing::played(const TestScene& test) {
                                   png(one));
     scenes_.push_back(std::move(scene));
   } catch (const MethodError& e) {
-    to_stderr("what the policy read of scene {} of {} is not shown: {}\n", test.scene.index, test.scene.arm, e.what());
+    to_stderr("the policy's input in scene {} of {} is not shown: {}\n", test.scene.index, test.scene.arm, e.what());
   }
 }
 

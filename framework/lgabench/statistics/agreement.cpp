@@ -75,7 +75,7 @@ CellAgreement compare_outcomes(const CellResult& recorded, const CellResult& rec
     both.only_recomputed += pair.only_second;
     both.episodes += pair.episodes;
     if (pair.only_first + pair.only_second > 0)
-      changed += fmt::format("{}arm {}: {} of {} succeeded there, {} here, {} episodes ended differently",
+      changed += fmt::format("{}arm {}: {} of {} succeeded in the record, {} recomputed, {} episodes ended differently",
                              changed.empty() ? "" : "; ", arm, pair.won_first, pair.episodes, pair.won_second,
                              pair.only_first + pair.only_second);
   }
@@ -107,7 +107,7 @@ CellAgreement compare_cells(const fs::path& recorded, const fs::path& recomputed
         differences.push_back(std::move(where));
   if (differences.empty()) return {Agreement::identical, "", 0, 0, episodes_of(recorded)};
   const std::string where = fmt::format("from {}", fmt::join(differences, ", "));
-  if (!excused) return differing(where + ", though build, processor and data are those of the record");
+  if (!excused) return differing(where + ", though build, processor and data are the same");
   if (differences.front().rfind(cell_file::selections, 0) == 0) return differing(where);
   CellAgreement outcomes = compare_outcomes(read_cell(recorded), read_cell(recomputed));
   outcomes.detail = outcomes.detail.empty() ? where : fmt::format("{}; {}", outcomes.detail, where);

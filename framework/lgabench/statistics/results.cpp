@@ -207,8 +207,8 @@ CellResult read_cell(const fs::path& directory) {
   for (const std::string& phase : phases()) JsonReader(cell.timing, timing_file.string()).at(phase).number();
   // Last, so that a torn file is reported with its line rather than as a wrong checksum.
   if (const fs::path changed = changed_file(directory, status); !changed.empty())
-    throw InputError(
-        fmt::format("{}: differs from its checksum in status.json; resuming the run makes it anew", changed.string()));
+    throw InputError(fmt::format("{}: differs from its checksum in status.json; --resume computes the cell again",
+                                 changed.string()));
   return cell;
 }
 
