@@ -33,7 +33,7 @@ def main(tree):
     licences_of({name: file for name, file in libraries.items() if "mujoco" not in name}, tree / "share/doc/lgabench")
     if outside := sorted({f"{name} => {file}" for path in tree.rglob("*") if is_elf(path)
                           for name, file in needed(path).items() if tree not in file.parents}):
-        sys.exit("not in the tree: " + ", ".join(outside))
+        sys.exit("libraries outside the tree: " + ", ".join(outside))
 
 
 if __name__ == "__main__":

@@ -94,7 +94,7 @@ def licences_of(libraries, about):
             if owner := subprocess.run(["dpkg", "-S", path], capture_output=True, text=True).stdout.split(":")[0]:
                 break
         else:
-            sys.exit(f"{file}: no package of Debian has it, so that its licence is not known")
+            sys.exit(f"{file}: no Debian package holds it, so that its licence is unknown")
         (folder / owner).mkdir(exist_ok=True)
         shutil.copy(f"/usr/share/doc/{owner}/copyright", folder / owner / "copyright")
 

@@ -90,7 +90,7 @@ const Texture& texture(const std::string& name) {
   const auto known = made.find(name);
   if (known != made.end()) return known->second;
   const std::optional<Pattern> found = pattern(name);
-  if (!found) throw InputError(fmt::format("texture \"{}\": expected the name of a texture", name));
+  if (!found) throw InputError(fmt::format("texture \"{}\": no such texture", name));
   return made.emplace(name, painted(name, *found)).first->second;
 }
 

@@ -299,7 +299,7 @@ class MobileType final : public EnvironmentType {
   std::shared_ptr<const SceneContent> read_content(const Scenario& scenario, const JsonReader& file,
                                                    const JsonReader* scenes, bool training) const override {
     for (const ScenarioCommand& command : scenario.commands)
-      if (!command.truth.target.is_product()) file.at("commands").fail("one set as each target, here");
+      if (!command.truth.target.is_product()) file.at("commands").fail("one set as the target of each command");
     if (scenario.task == fetch) return std::make_shared<FetchContent>(read_fetch_content(scenario, scenes, training));
     return std::make_shared<Content>(mobile::read_content(scenario, file, scenes, training));
   }

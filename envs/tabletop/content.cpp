@@ -83,7 +83,8 @@ void read_scenes(const JsonReader& reader, const Scenario& scenario, Content& co
       if (reader.has(other)) reader.at(other).fail("no such member beside \"near_miss\"");
     if (content.distractors.second == 0) reader.at("near_miss").fail("\"distractors\" beside it");
     if (content.by_meaning && reader.at("near_miss").json() != Json(true))
-      reader.at("near_miss").fail("true or false beside \"near_miss_sets\" or such a meaning");
+      reader.at("near_miss")
+          .fail("true or false where a command has several sets or a rule, or the scenario \"near_miss_sets\"");
     content.near_miss = read_near_miss(reader.at("near_miss"), scenario);
   }
   if (reader.has("later_letters")) content.later_letters = reader.at("later_letters").boolean();
@@ -111,14 +112,20 @@ void read_meant(const Scenario& scenario, const JsonReader& file, const JsonRead
   if (file.has("undecided")) content.undecided = read_sets(file.at("undecided"), scenario.space);
   if (file.has("near_miss_sets")) content.near_miss_sets = read_sets(file.at("near_miss_sets"), scenario.space);
   if (find_task(scenario.task).most_distractors() < content.others())
-    file.at("task").fail("pick_and_place, whose scenes have room for what such a meaning needs");
-  if (scenario.as_method_asks) file.fail("\"as_method_asks\": false in \"train\", beside such a meaning");
+    file.at("task").fail(
+        "pick_and_place where a command has several sets or a rule, or the scenario \"near_miss_sets\"");
+  if (scenario.as_method_asks)
+    file.fail(
+        "\"as_method_asks\": false in \"train\" where a command has several sets or a rule, or the scenario "
+        "\"near_miss_sets\"");
   for (const ScenarioCommand& command : scenario.commands)
     if (!(command.truth.target == truth)) file.at("commands").fail("commands of one meaning");
   if (training) content.misleading = .5;
   if (!scenes) return;
   for (const char* other : {"target", "outside_all_commands", "hard", "members", "later_letters", "choice", "decoys"})
-    if (scenes->has(other)) scenes->at(other).fail("no such member beside such a meaning");
+    if (scenes->has(other))
+      scenes->at(other).fail(
+          "no such member where a command has several sets or a rule, or the scenario \"near_miss_sets\"");
   if (scenes->has("misleading")) {
     content.misleading = scenes->at("misleading").number();
     if (!(content.misleading >= 0 && content.misleading <= 1)) scenes->at("misleading").fail("a share from 0 to 1");

@@ -99,7 +99,7 @@ std::shared_ptr<const Persons> read_persons(const Scenario& scenario, const Json
     const ScenarioCommand& command = scenario.commands[i];
     const auto* const words = drawn::words_in(persons->grammar, command.utterance);
     if (!words)
-      commands[i].at("utterance").fail("words of the grammar of persons, and nothing after them but one of its hints");
+      commands[i].at("utterance").fail("words of the grammar of persons, followed by nothing or by one of its hints");
     if (command.truth.target.empty()) commands[i].at("truth").fail("a rule that fits an object");
     auto& rules = persons->rules[words];
     if (rules.empty()) rules = drawn::rules_of(persons->grammar, words->types);
@@ -108,7 +108,7 @@ std::shared_ptr<const Persons> read_persons(const Scenario& scenario, const Json
                                    [&meant](const auto& one) { return meant && drawn::same(one, *meant); });
     if (rule == rules.end()) commands[i].at("truth").fail("a rule of the grammar of persons for these words");
     const auto* const hint = drawn::hint_in(persons->grammar, command.utterance);
-    if (hint && !drawn::leaves(*hint, *rule)) commands[i].at("truth").fail("a rule that the command's hint leaves");
+    if (hint && !drawn::leaves(*hint, *rule)) commands[i].at("truth").fail("a rule that the command's hint allows");
     persons->all.push_back({words, *rule});
   }
   return persons;

@@ -82,7 +82,7 @@ def _siblings(folder, tree, seen):
 def _text(found, name, default, file):
     value = found.get(name, default)
     if not isinstance(value, str):
-        raise NoMethod(f"{file}: {name}: expected a text that is written out")
+        raise NoMethod(f"{file}: {name}: expected a string literal")
     return value
 
 
@@ -130,7 +130,7 @@ def describe(written):
     real = file.resolve()  # where it runs and imports from: a link's own folder has nothing to do with it
     options = found.get("options", {})
     if not isinstance(options, dict):
-        raise NoMethod(f"{file}: options: expected a dictionary that is written out")
+        raise NoMethod(f"{file}: options: expected a dictionary literal")
     try:
         json.dumps(options, allow_nan=False, sort_keys=True)
     except (TypeError, ValueError) as error:

@@ -36,7 +36,8 @@ class Channel:
             os._exit(1)
         text = json.dumps(header, allow_nan=False).encode()
         if max(len(text), len(payload)) > MOST:
-            raise ValueError(f"a frame \"{header['type']}\" of {len(text)} and {len(payload)} bytes is over the limits")
+            raise ValueError(f"a frame \"{header['type']}\" with a header of {len(text)} and a payload of {len(payload)} bytes is "
+                             "over the limits")
         self.socket.sendall(PREFIX.pack(MAGIC, len(text), len(payload), zlib.crc32(payload, zlib.crc32(text)))
                             + text + payload)
 
@@ -48,12 +49,12 @@ class Channel:
             return None
         magic, header_bytes, payload_bytes, crc = PREFIX.unpack(prefix)
         if magic != MAGIC or max(header_bytes, payload_bytes) > MOST:
-            raise Malformed("no frame begins like that")
+            raise Malformed("its first bytes are not those of a frame")
         text, payload = self._take(header_bytes, files), self._take(payload_bytes, files)
         if text is None or payload is None:
             return None
         if zlib.crc32(payload, zlib.crc32(text)) != crc:
-            raise Malformed("the checksum is another")
+            raise Malformed("its checksum does not match")
         for extra in files[1:]:
             os.close(extra)
         return _header(text), payload, files[0] if files else None

@@ -340,7 +340,7 @@ def serve(channel):
     while frame is not None:
         kind = frame[0]["type"]
         if kind not in host.FRAMES:
-            raise Malformed(f"no frame of a worker: \"{kind}\"")
+            raise Malformed(f"unexpected frame from the worker: \"{kind}\"")
         _told(channel, "method", host.answer, frame)
         if kind == "bye":
             return

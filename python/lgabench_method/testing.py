@@ -118,7 +118,7 @@ def services(kind: Callable[[], Method], scenario: Scenario = "heart", *, seed: 
     """Services with the options' defaults, and `options` in place of some. `files` is a new directory below the temporary one."""
     declared: dict[str, dict[str, Any]] = getattr(kind, "options", {})
     if unknown := set(options) - set(declared):
-        raise ValueError(f"options: no {', '.join(sorted(unknown))} among {', '.join(declared) or 'none'}")
+        raise ValueError(f"options: unknown {', '.join(sorted(unknown))}, expected among: {', '.join(declared) or 'none'}")
     space = as_scenario(scenario)
     rows, columns = space.picture_size
     layout = {"observation": {"rows": rows, "columns": columns, "channels": 3}, "action": json.loads(space._core.action_space_json)}

@@ -428,7 +428,7 @@ class Live(Asking):
         self.assertEqual(len(self.server.asked), asked, "the same patch in other words")
         self.assertIn("out: holds another run (answers", self.play("--request", '{"temperature":null,"seed":1}', expect=2).stderr)
         self.assertIn("out: holds another run (answers", self.play(expect=2).stderr)
-        self.assertIn("--request: /model: expected it to be left to lgabench", self.play("--request", '{"model":"n"}', expect=2).stderr)
+        self.assertIn("--request: /model: expected no such member, which lgabench sets", self.play("--request", '{"model":"n"}', expect=2).stderr)
         self.assertIn("expected --answers openai with them", self.call(*self.run_it, "--request", "{}", expect=2).stderr)
 
     def test_a_worker_that_is_killed_leaves_a_cassette_that_goes_on(self):
@@ -481,7 +481,7 @@ class RealServer(Case):
             self.assertIn("final answer", line["reply"].lower())
         if not all_answered:  # a small model: each question without an answer is named, or it is given up early
             unanswered = re.findall(r"^no answer: ", said, re.M)
-            if "nothing more is asked" in said:
+            if "lgabench stopped asking" in said:
                 self.assertEqual(kept, [])
                 return
             self.assertEqual(len(kept) + len(unanswered), 112, said)
@@ -856,7 +856,7 @@ class Humans(Case):
         (failed, status), = [(cell, status) for cell, status in self.cells("out").values() if status["state"] == "failed"]
         self.assertEqual((failed["method"]["id"], failed["participant"]["id"]), ("lga_hill", "made-up-1"))
         self.assertEqual(status["fault"], "host")
-        self.assertIn("edited another proposal than the language model of this run makes", status["reason"])
+        self.assertIn("the edit began with another proposal than this run's language model makes", status["reason"])
         self.write("made-up-1", consent={"given": False, "statement": "-", "ethics": "-"})
         self.assertIn("answers are used only with consent", self.call(*self.RUN, "--humans", "people", expect=2).stderr)
 

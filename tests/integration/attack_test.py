@@ -279,7 +279,7 @@ class Cache(OneRun):
             one.unlink()
             os.mkfifo(one)
 
-        says = {swapped: "holds other scenes or labels than its name says", edited: "does not have the bytes",
+        says = {swapped: "holds other scenes or labels than its name says", edited: "changed since it was written",
                 old: "of an older version", cut: "cut off, or of an older version", pipe: "not a regular file"}
         for damage, words in says.items():
             with self.subTest(damage.__name__):

@@ -108,7 +108,7 @@ class Mistakes(Case):
             (["info", "lag"], r'"lag" \(did you mean "lga"\?\); .*--plugin-path'),
             (["demos", "hart", "--out", "x"], r'no scenario "hart" \(did you mean "heart"\?\)'),
             (["report", "x", "--format", "yaml"], r'--format: no format "yaml", expected one of: text, md, latex, json, csv'),
-            (["select", "Bring me the unicorn."], r"expected some for .*; a model is asked with --answers openai \(docs/language-models.md\)$"),
+            (["select", "Bring me the unicorn."], r"none for .*; --answers openai asks a model \(docs/language-models.md\)$"),
             (["leaderboard", "build", "--cells", "3"], r"^lgabench: leaderboard build: --cells is an option of verify$"),
             (["leaderboard", "add", "x", "--documents", "y"], r"leaderboard add: --documents is an option of build, check$"),
             (["leaderboard", "check", "x"], r'leaderboard check: "x" is a word too many$'),

@@ -82,7 +82,7 @@ class FaultyPlugins(Faults):
         ("act", "not"): None, ("act", "print"): None, ("act", "fork"): None,
         ("act", "fork_and_spin"): None, ("act", "thread"): None,
         # On the socket; and without it.
-        ("act", "messages"): r"sent a malformed frame: it does not begin as one in phase evaluate",
+        ("act", "messages"): r"sent a malformed frame: its first bytes are not those of a frame in phase evaluate",
         ("act", "close"): r"exited with 0 in phase evaluate", ("learn", "close"): r"exited with 0 in phase learn",
         ("act", "throw"): "", ("act", "throw_int"): "", ("act", "nan"): "",
         ("act", "abort"): r"signal 6 .*in phase evaluate", ("act", "segfault"): r"signal 11 .*in phase evaluate",
@@ -399,7 +399,7 @@ class TornFiles(Faults):
         one, other = sorted((self.dir / "out/cells").iterdir())
         shutil.rmtree(one)
         shutil.copytree(other, one)
-        self.assertRegex(self.call(*seeds).stderr, rf"{one.name}/cell.json does not have the bytes.*computed again")
+        self.assertRegex(self.call(*seeds).stderr, rf"{one.name}/cell.json changed since it was written.*computed again")
         self.assertEqual(self.results("out"), before)
 
 

@@ -230,7 +230,7 @@ class Persons(Case):
         truth["object_types"] = [next(one for one in words["types"] if [one] not in hint["types"])]
         (self.dir / "bad.json").write_text(json.dumps(good))
         error = self.call("check-scenario", "bad.json", expect=2).stderr
-        self.assertIn("/truth: expected a rule that the command's hint leaves", error)
+        self.assertIn("/truth: expected a rule that the command's hint allows", error)
 
     def test_a_row_of_the_board_meets_other_persons(self):
         """Truths of the published persons, as answers, are of no use with others, whose words are the same."""

@@ -86,7 +86,7 @@ class Preferences(Case):
                     for method in "plga", "plga_active":
                         self.assertEqual((found[method, 5][1] / name).read_bytes(), (found["lga", 5][1] / name).read_bytes())
                 said = (found["plga", 5][1] / "log.txt").read_text()
-                self.assertEqual("no hypotheses are known, what the words say stays" in said, suite == "words", said)
+                self.assertEqual("no hypotheses are known; the Selection stays as the words say" in said, suite == "words", said)
         self.call("run", "words", "--scenarios", DRINK, "--methods", "plga+meaning=named", "--answers", "none", "--demos", "5",
                   *RUN, "--out", "nobody")
         (command, directory), = self.selections("nobody").values()

@@ -103,7 +103,7 @@ class OwnScenario(Case):
         self.new(*NAME)
         words = ("--scenario-path", ".", *SMALL, "--answers", "none", "--methods", "lga", "--out", "out")
         done = self.call("run", "q1", "--scenarios", "round", *words, expect=3)
-        self.assertIn('a language model is asked about "Bring me something round.", and --answers none has none', done.stderr)
+        self.assertIn('the method asks a language model about "Bring me something round.", and --answers none has no answers', done.stderr)
 
     def test_where_the_sentence_encoder_is_missing_that_is_said_first(self):
         self.environment["LGABENCH_ENCODER"] = str(self.dir / "none")

@@ -82,7 +82,7 @@ class Testing(unittest.TestCase):
         chosen = nearest()().select(command, lgabench.Scenario("heart").space, services)
         self.assertEqual(chosen.target, one.instruction.selection.target)
         self.assertGreater(services.lm.asked, 50)
-        with self.assertRaisesRegex(ValueError, "no second among first"):
+        with self.assertRaisesRegex(ValueError, "unknown second, expected among: first"):
             testing.services(nearest(), second=1)
 
 

@@ -32,7 +32,7 @@ class Setup(unittest.TestCase):
         return done.stderr
 
     def test_another_processor(self):
-        self.assertIn("expected an x86-64 processor, for which MuJoCo's wheel is, got aarch64", self.said("aarch64", "apt-get"))
+        self.assertIn("expected an x86-64 processor, for which MuJoCo's wheel is built, got aarch64", self.said("aarch64", "apt-get"))
 
     def test_another_system(self):
         for release, name in (('PRETTY_NAME="Debian GNU/Linux 11 (bullseye)"\nVERSION_CODENAME=bullseye\n', "Debian GNU/Linux 11 (bullseye)"),
@@ -50,7 +50,7 @@ class Setup(unittest.TestCase):
 class WithoutNetwork(unittest.TestCase):
     def test_what_is_skipped_is_said(self):
         for name, skipped in (("axe", "axe-core could not be fetched, so that pages are not checked for accessibility"),
-                              ("actionlint", "actionlint could not be fetched, so that workflows are not checked by it")):
+                              ("actionlint", "actionlint could not be fetched, so that it does not check the workflows")):
             with self.subTest(name), tempfile.TemporaryDirectory() as directory:
                 python = pathlib.Path(directory) / "python3"
                 python.write_text("#!/bin/sh\necho 'Could not resolve host' >&2\nexit 1\n")

@@ -317,7 +317,7 @@ TEST(RecordedAnswers, OfSweepSayWhatToAvoidAtTwiceTheQueries) {
 
 TEST(RecordedAnswers, ThatAreMissingAreAnErrorAndNeverANo) {
   EXPECT_SAYS(message_of<InputError>([] { ask(scenario("rotate_block", "Rotate the block."), "gpt4_study"); }),
-              "answers of gpt4_study: expected some for scenario rotate_block, \"Rotate the block.\"");
+              "answers of gpt4_study: none for scenario rotate_block, \"Rotate the block.\"");
   EXPECT_SAYS(message_of<InputError>([] { ask(scenario("rotate_block", "Rotate the block."), "gpt4_study"); }),
               "vowel_with_multiple_colors");
   EXPECT_THROW(ask(scenario("x", "Bring me the moon."), "claude"), InputError);

@@ -336,7 +336,7 @@ TEST_F(Chat, AModelThatAnswersNothingIsNotAskedOn) {
   EXPECT_EQ(model.open_questions(command, large, feature_questions(command, large)), 100);
   EXPECT_SAYS(
       message_of<MethodError>([&] { select_features(command, large, model); }),
-      "m: none of its first 20 replies has an answer, nothing more is asked; the last: language model: expected");
+      "m: none of its first 20 replies has an answer, lgabench stopped asking; the last: language model: expected");
   EXPECT_LE(server.requests, 2 * (20 + 4)) << "each twice, and those that were under way";
 }
 
@@ -464,11 +464,12 @@ TEST(AskedModel, IsItsNameAndWhatIsNotTheUsualRequest) {
   EXPECT_EQ(to_text(asked_model("m", R"({"stop": ["x", null]})")), R"(m {"stop":["x",null]})");
   EXPECT_EQ(command_words(asked_model("m", R"({"user": "d'Arc"})")), R"(--model m --request '{"user":"d\u0027Arc"}')");
   EXPECT_EQ(command_words(read_asked_model("m")), "--model m");
-  for (const auto& [patch, complaint] : {std::pair{"[]", "--request: /: expected an object"},
-                                         {"{", "--request: byte"},
-                                         {R"({"model": "n"})", "--request: /model: expected it to be left to lgabench"},
-                                         {R"({"messages": []})", "--request: /messages: expected"},
-                                         {R"({"stream": true})", "--request: /stream: expected"}})
+  for (const auto& [patch, complaint] :
+       {std::pair{"[]", "--request: /: expected an object"},
+        {"{", "--request: byte"},
+        {R"({"model": "n"})", "--request: /model: expected no such member, which lgabench sets"},
+        {R"({"messages": []})", "--request: /messages: expected"},
+        {R"({"stream": true})", "--request: /stream: expected"}})
     EXPECT_SAYS(message_of<InputError>([patch = patch] { asked_model("m", patch); }), complaint);
   EXPECT_SAYS(message_of<InputError>([] { asked_model("m {}", ""); }), "--model m {}: expected no \" {\" in it");
 }

@@ -157,7 +157,7 @@ TEST(ReadFile, ReadsRegularFilesAlone) {
   fs::remove(pipe);
   fs::create_symlink(file, link);
   EXPECT_SAYS(message_of<InputError>([&] { expect_plain_entries(directory.path); }),
-              "link: a symbolic link; a run holds");
+              "link: a symbolic link, which a run may not hold");
 }
 
 TEST(Tree, IsMeasuredWithoutFollowingLinks) {

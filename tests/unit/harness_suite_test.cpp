@@ -510,7 +510,7 @@ TEST(Names, AreASettingOfMethodsAloneAndNameTheRow) {
   EXPECT_SAYS(refusal("q1", {{"names", {"raed"}}}), "no names or perceiver \"raed\" (did you mean \"read\"?)");
   EXPECT_SAYS(refusal("q1", {{"segments", {"colour"}}}), "/segments/0: expected \"simulator\" or \"difference\"");
   EXPECT_SAYS(refusal("robustness", {{"names", {"read"}}}), "makes errors in the names, which reading would overwrite");
-  EXPECT_SAYS(refusal("mobile", {{"names", {"read"}}}), "nothing learned to read pictures of mobile");
+  EXPECT_SAYS(refusal("mobile", {{"names", {"read"}}}), "no reader was trained on pictures of mobile");
 }
 
 TEST(Variants, RefuseOneRowTwiceAndWhatIsNoVariant) {
@@ -630,7 +630,7 @@ TEST_F(RunDirectories, ACellIsCompleteWithItsBuildAndItsBytes) {
   fs::remove(directory.cell(k) / "status.json");
   EXPECT_SAYS(directory.state(k, build).why, "status.json: cannot be read");
   finish(directory.cell("0123456789abcdef"), build);
-  EXPECT_SAYS(directory.state("0123456789abcdef", build).why, "cell.json does not have the bytes");
+  EXPECT_SAYS(directory.state("0123456789abcdef", build).why, "cell.json changed since it was written");
 }
 
 TEST_F(RunDirectories, ResumingWithAnotherBuildSaysSoInRunJson) {

@@ -81,7 +81,7 @@ TEST(Frames, that_are_malformed_are_refused_with_the_reason) {
     ends.raw.close();  // ends a reader that took it
     return ends.refusal();
   };
-  EXPECT_SAYS(refusal_of("{\"phase\": \"the fixture's own\"}\n"), "does not begin as one");
+  EXPECT_SAYS(refusal_of("{\"phase\": \"the fixture's own\"}\n"), "its first bytes are not those of a frame");
   EXPECT_SAYS(refusal_of("LGA1" + number(2 << 20) + number(0) + number(0)),
               "a header of 2097152 bytes, at most 1048576");
   EXPECT_SAYS(refusal_of("LGA1" + number(2) + number((1 << 20) + 1) + number(0)),

@@ -39,7 +39,8 @@ TEST(Jobs, OfAMethodNeedItsPlugin) {
   CellJob job = reference_job();
   job.cell.method.kind = "method";
   const Json json = to_json(job);
-  EXPECT_SAYS(message_of<InputError>([&] { read_cell_job(JsonReader(json, "job")); }), "a plugin for a method");
+  EXPECT_SAYS(message_of<InputError>([&] { read_cell_job(JsonReader(json, "job")); }),
+              "\"method\" beside it exactly where a method runs");
 }
 
 TEST(Jobs, NameThePluginsThatTheyWereWrittenWith) {

@@ -116,13 +116,13 @@ TEST_F(ParticipantFile, StandsInForThePerson) {
   EXPECT_EQ(edited.cost.human_seconds, 21);
   proposal.target.product().textures = {"red", "dark red"};
   EXPECT_SAYS(message_of<InputError>([&] { human.edit(command, proposal); }),
-              "participant made-up-01, \"Bring me the red heart.\": edited another proposal");
+              "participant made-up-01, \"Bring me the red heart.\": the edit began with another proposal");
 
   ParticipantAsHuman elsewhere(read(invented()), load_scenario("heart"));
   EXPECT_SAYS(message_of<InputError>([&] {
                 elsewhere.specify({"Bring me the heart.", "pick_and_place"});
               }),
-              "expected an answer");
+              "no answer to this command");
 }
 
 TEST_F(ParticipantFile, EveryParticipantHasOne) {

@@ -262,7 +262,8 @@ TEST(Persons, AHostileGrammarIsRefused) {
   const auto hint = [&refused](const char* member, const Json& value) {
     return refused("/hints", Json::array({{{"says", "A hint."}, {member, value}}}));
   };
-  EXPECT_PRED2(says, hint("looks", {"plaid"}), "/hints/0/looks/0: expected a look of the grammar, or not one");
+  EXPECT_PRED2(says, hint("looks", {"plaid"}),
+               "/hints/0/looks/0: expected a look of the grammar, or \"not \" and a look");
   EXPECT_PRED2(says, hint("places", {"left_of"}), "/hints/0/places/0: expected a place of the grammar");
   EXPECT_PRED2(says, hint("types", {{"dragon"}}), "/hints/0/types/0: expected object types of the feature space");
   EXPECT_PRED2(says, hint("types", {{"apple"}}), "/hints/0: expected parts that some rules of \"a packaged drink\"");

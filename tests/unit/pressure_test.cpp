@@ -302,7 +302,7 @@ TEST(Variants, AreScenariosOfTheirOwn) {
   EXPECT_EQ(two.tests.back().id, "new_other_near_members_2") << "a mean in an arm is over scenarios of one variant";
   design.engines = {}, design.methods = {}, design.options = Json::object(), design.test_scenes = TestScenes::shared;
   EXPECT_SAYS(message_of<InputError>([&] { expand(suite, design, {}, {}); }),
-              "few_members.json: /test_scenes: expected per_seed beside \"members\"");
+              "few_members.json: /test_scenes: expected per_seed, since \"members\"");
 }
 
 // The worlds of the board's first presets.

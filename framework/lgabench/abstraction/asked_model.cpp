@@ -24,7 +24,7 @@ AskedModel asked_model(const std::string& name, const std::string& patch_text) {
   const JsonReader patch(json, "--request");
   if (!patch.json().is_object()) patch.fail("an object, a JSON merge patch");
   for (const char* own : {"model", "messages", "stream"})
-    if (patch.has(own)) patch.at(own).fail("it to be left to lgabench");
+    if (patch.has(own)) patch.at(own).fail("no such member, which lgabench sets");
   if (name.find(" {") != std::string::npos)
     throw InputError(fmt::format("--model {}: expected no \" {{\" in it", name));
   AskedModel model{name};

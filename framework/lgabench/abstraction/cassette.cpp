@@ -17,12 +17,12 @@
 namespace lgabench {
 
 Cassette::Cassette(const fs::path& file) : file_(file) {
-  if (fs::exists(file) && !read()) to_stderr("{}: the last line was cut off; not read\n", file.string());
+  if (fs::exists(file) && !read()) to_stderr("{}: the last line is cut off and was not read\n", file.string());
 }
 
 bool Cassette::read() {
   const std::string text = read_file(file_);
-  if (text.size() < size_) throw InputError(fmt::format("{}: was cut off since it was read", file_.string()));
+  if (text.size() < size_) throw InputError(fmt::format("{}: became shorter since it was read", file_.string()));
   const std::lock_guard lock(mutex_);
   for (std::size_t end; (end = text.find('\n', size_)) != std::string::npos; size_ = end + 1) {
     const std::string place = fmt::format("{}: line {}", file_.string(), ++lines_);
@@ -44,7 +44,8 @@ Cassette::Turn::Turn(Cassette& cassette, const std::function<void(const std::str
   if (lock_ < 0) refuse("cannot be written");
   try {
     if (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && waiting)
-      waiting(fmt::format("{}: another process asks with it; waiting for its replies", cassette.file_.string()));
+      waiting(fmt::format("{}: another process is filling this cassette; waiting for its replies",
+                          cassette.file_.string()));
     while (::flock(lock_, LOCK_EX) != 0)
       if (errno != EINTR) refuse("cannot be locked");
     if (!cassette.read() && ::ftruncate(lock_, static_cast<off_t>(cassette.size_)) != 0) refuse("cannot be written");

@@ -98,7 +98,7 @@ void ChatLanguageModel::ask(const std::vector<Request>& requests, const std::str
       const std::lock_guard lock(mutex);
       if (!no_answer.empty() && ++without_answer_ >= hopeless_from && cassette_.models().empty())
         thrown = std::make_exception_ptr(MethodError(
-            fmt::format("{}: none of its first {} replies has an answer, nothing more is asked; the last: {}",
+            fmt::format("{}: none of its first {} replies has an answer, lgabench stopped asking; the last: {}",
                         asked_model_.name, without_answer_, no_answer)));
       if (thrown) next = requests.size();
       if (thrown && !failure) failure = thrown;

@@ -8,8 +8,8 @@ namespace lgabench {
 namespace {
 
 [[noreturn]] void refuse(const Command& command) {
-  throw InputError(
-      fmt::format("a language model is asked about \"{}\", and --answers none has none", command.utterance));
+  throw InputError(fmt::format("the method asks a language model about \"{}\", and --answers none has no answers",
+                               command.utterance));
 }
 
 }  // namespace

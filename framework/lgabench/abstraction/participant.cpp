@@ -103,21 +103,21 @@ void ParticipantAsHuman::refuse(const Command& command, const char* what) const 
 
 const Answer& ParticipantAsHuman::answer(const Command& command) const {
   const Answer* found = participant_.find(scenario_, command.utterance);
-  if (!found) refuse(command, "expected an answer, there is none");
+  if (!found) refuse(command, "no answer to this command");
   return *found;
 }
 
 Selection ParticipantAsHuman::specify(const Command& command) {
   const Answer& given = answer(command);
-  if (!given.specified) refuse(command, "expected a Selection made from scratch, there is an edited one alone");
+  if (!given.specified) refuse(command, "no Selection made from scratch, only an edited one");
   return *given.specified;
 }
 
 Selection ParticipantAsHuman::edit(const Command& command, const Selection& proposal) {
   const Answer& given = answer(command);
-  if (!given.edited) refuse(command, "expected an edited Selection, there is one made from scratch alone");
+  if (!given.edited) refuse(command, "no edited Selection, only one made from scratch");
   if (distribution_json(given.proposal) != distribution_json(proposal))
-    refuse(command, "edited another proposal than the language model of this run makes; see --answers");
+    refuse(command, "the edit began with another proposal than this run's language model makes; see --answers");
   Selection edited = *given.edited;
   edited.cost = proposal.cost;
   edited.cost.human_seconds = given.edited->cost.human_seconds;

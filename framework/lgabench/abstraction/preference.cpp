@@ -143,7 +143,7 @@ Selection preferred(const Command& command, const Selection& selected, const Fea
   const std::vector<Hypothesis> hypotheses =
       asks_model ? services.lm.hypotheses(command, space) : std::vector<Hypothesis>();
   if (asks_model && hypotheses.empty()) {
-    to_stdout("\"{}\": no hypotheses are known, what the words say stays\n", command.utterance);
+    to_stdout("\"{}\": no hypotheses are known; the Selection stays as the words say\n", command.utterance);
     return selected;
   }
   Preference preference(selected.target, hypotheses, space, asking.unlisted, asking.share);

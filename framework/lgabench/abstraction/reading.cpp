@@ -21,7 +21,7 @@ const SeeingLibrary& library() {
   static const SeeingLibrary* const opened = [] {
     void* const file = ::dlopen((library_directory() / seeing_library).c_str(), RTLD_NOW | RTLD_LOCAL);
     const auto entry = file ? reinterpret_cast<decltype(&lgabench_seeing)>(::dlsym(file, "lgabench_seeing")) : nullptr;
-    if (!entry) throw InputError(fmt::format("names are read by a library: {}", ::dlerror()));
+    if (!entry) throw InputError(fmt::format("the library that reads names cannot be opened: {}", ::dlerror()));
     return entry();
   }();
   return *opened;
@@ -87,14 +87,14 @@ fs::path reader_file(const std::string& environment, const Reading& reading) {
   const bool drawn = reading.names == "read_drawn" || reading.names == "read_robust";
   const fs::path file = data_directory() / "readers" / environment / (drawn ? "drawn.forest" : "plain.forest");
   if (!fs::exists(file))
-    throw InputError(fmt::format("{}: expected a reader of the pictures of {}", file.string(), environment));
+    throw InputError(fmt::format("{}: expected the reader of the pictures of {}", file.string(), environment));
   return file;
 }
 
 std::string why_not_read(const Scenario& scenario, const Reading& reading) {
   if (reading.none()) return "";
   if (reading.needs_library() && !fs::is_directory(data_directory() / "readers" / scenario.environment))
-    return fmt::format("nothing learned to read pictures of {}", scenario.environment);
+    return fmt::format("no reader was trained on pictures of {}", scenario.environment);
   const EnvironmentType& environment = find_environment(scenario.environment);
   for (const std::string& id : played_arms(scenario.json))
     if (const Arm& arm = scenario.arm(id);

@@ -77,7 +77,7 @@ RecordedFile read_recorded(const fs::path& file) {
     recorded.answers.push_back(read_answer(entry, space_of(space, spaces), roles));
     const RecordedAnswer& one = recorded.answers.back();
     if (!seen.insert({one.space, one.scenario, one.scenario.empty() ? one.asked_as : ""}).second)
-      entry.fail("each scenario, and each command without one, once in a space");
+      entry.fail("each scenario, and each command without a scenario, once in a space");
   }
   if (recorded.answers.empty()) reader.at("answers").fail("at least one");
   return recorded;
@@ -126,8 +126,8 @@ std::vector<std::string> RecordedLanguageModel::known() const {
 const RecordedAnswer& RecordedLanguageModel::expect(const std::string& utterance) const {
   if (const RecordedAnswer* found = find(utterance)) return *found;
   throw InputError(
-      fmt::format("answers of {}: expected some for {}\"{}\" in the space {}; there are: {}; a model is "
-                  "asked with --answers openai (docs/language-models.md)",
+      fmt::format("answers of {}: none for {}\"{}\" in the space {}, only for: {}; --answers openai asks "
+                  "a model (docs/language-models.md)",
                   file_.stem().string(), scenario_.empty() ? "" : fmt::format("scenario {}, ", scenario_), utterance,
                   space_.id, fmt::join(known(), " | ")));
 }

@@ -40,7 +40,7 @@ class InOrder final : public Environment {
 
  private:
   Environment& after_reset(const char* call) const {
-    if (!has_scene_) throw Error(fmt::format("{}: expected a reset() before it, which puts a scene there", call));
+    if (!has_scene_) throw Error(fmt::format("{}: expected a reset() before it", call));
     return *environment_;
   }
 

@@ -92,8 +92,8 @@ std::vector<DrawnCommand> draw_commands(const Lexicon& lexicon, const DrawReques
     for (std::size_t i = 0; i < open.size() && static_cast<int>(drawn.size()) < request.commands;)
       next(open[i]) ? ++i : (open.erase(open.begin() + static_cast<std::ptrdiff_t>(i)), i);
   if (static_cast<int>(drawn.size()) < request.commands)
-    throw InputError(fmt::format("commands: expected at most {}, which is all that was found, got {}", drawn.size(),
-                                 request.commands));
+    throw InputError(
+        fmt::format("commands: expected at most {}, all that were found, got {}", drawn.size(), request.commands));
   return drawn;
 }
 

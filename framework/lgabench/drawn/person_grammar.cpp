@@ -62,7 +62,7 @@ PersonGrammar::Hint read_hint(const JsonReader& entry, const PersonGrammar& gram
         if (look.string() == "not " + one.is)
           found = numbers_of(grammar.space.textures, grammar.space.textures) & ~numbers;
       }
-      if (found.none()) look.fail("a look of the grammar, or not one");
+      if (found.none()) look.fail("a look of the grammar, or \"not \" and a look");
       hint.textures.push_back(found);
     }
   if (entry.has("places"))

@@ -61,8 +61,8 @@ void Channel::send(const Json& header, const std::string& payload, const Descrip
   expect_owner();
   const std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (text.size() > most_header_bytes || payload.size() > most_payload_bytes)
-    throw MethodError(fmt::format("a frame \"{}\" of {} and {} bytes is over the limits", header.value("type", ""),
-                                  text.size(), payload.size()));
+    throw MethodError(fmt::format("a frame \"{}\" with a header of {} and a payload of {} bytes is over the limits",
+                                  header.value("type", ""), text.size(), payload.size()));
   const Prefix prefix{magic, static_cast<std::uint32_t>(text.size()), static_cast<std::uint32_t>(payload.size()),
                       crc32(text, payload)};
   std::string bytes(sizeof prefix, 0);
@@ -127,14 +127,14 @@ std::optional<Frame> Channel::receive() {
   Frame frame;
   Prefix prefix{};
   if (!take(reinterpret_cast<char*>(&prefix), sizeof prefix, frame.file)) return std::nullopt;
-  if (prefix.magic != magic) malformed("it does not begin as one");
+  if (prefix.magic != magic) malformed("its first bytes are not those of a frame");
   check_size("a header", prefix.header_bytes, most_header_bytes);
   check_size("a payload", prefix.payload_bytes, most_payload_bytes);
   std::string header(prefix.header_bytes, 0);
   frame.payload.resize(prefix.payload_bytes);
   if (!take(header.data(), header.size(), frame.file) || !take(frame.payload.data(), frame.payload.size(), frame.file))
     return std::nullopt;
-  if (crc32(header, frame.payload) != prefix.crc32) malformed("its checksum is another");
+  if (crc32(header, frame.payload) != prefix.crc32) malformed("its checksum does not match");
   frame.header = parse_header(header);
   return frame;
 }

@@ -58,13 +58,13 @@ class HostedPolicy : public Policy {
         return static_cast<std::size_t>(reader.at("bytes").integer(0, std::numeric_limits<long long>::max()));
       });
       if (size > most_saved_bytes) {
-        to_stdout("the policy is not kept: {} bytes, expected 64 MiB at most\n", size);
+        to_stdout("the policy is not kept: it has {} bytes, at most 64 MiB are allowed\n", size);
         return std::nullopt;
       }
       bytes += frame.payload;
       if (bytes.size() == size) return bytes;
       if (bytes.size() > size || frame.payload.empty())
-        throw MethodError(fmt::format("saved a policy of {} bytes, and sent {}", size, bytes.size()));
+        throw MethodError(fmt::format("announced a saved policy of {} bytes and sent {}", size, bytes.size()));
     }
   }
 

@@ -93,7 +93,7 @@ std::string not_started_text(const std::string& interpreter) {
   const fs::path leads = fs::read_symlink(interpreter, no_link);
   if (interpreter.find('/') != interpreter.npos && !no_link && !fs::exists(interpreter))
     return fmt::format(
-        "{}: leads to {}, which is not there: make the virtual environment again, or name another "
+        "{}: a link to {}, which does not exist: make the virtual environment again, or name another "
         "interpreter with --python",
         interpreter, leads.string());
   return fmt::format("{}: cannot be started; --python names the interpreter", interpreter);
@@ -110,7 +110,7 @@ std::string answer_of(const std::string& interpreter, const std::string& word, c
         interpreter));
   const std::string last = last_line(error);
   if (confinement && (WIFSIGNALED(status) || last.rfind("MemoryError", 0) == 0))
-    throw PluginError(fmt::format("{}: expected a file that is read in {} s of processor time and {} GiB of memory",
+    throw PluginError(fmt::format("{}: reading it took more than {} s of processor time or {} GiB of memory",
                                   word.substr(0, word.rfind(':')), most_seconds, most_gib));
   if (status != 0) throw PluginError(fmt::format("{}: {}", interpreter, last));
   return out;
@@ -212,7 +212,7 @@ PluginInfo describe_python(const std::string& written, const std::string& interp
         "{}: id \"{}\", expected lower-case letters, digits and underscores (an attribute id, else the file's name)",
         written, plugin.id));
   if (plugin.asks == "truth")
-    throw PluginError(fmt::format("{}: asks \"truth\", which no method of yours may", written));
+    throw PluginError(fmt::format("{}: asks \"truth\", which only shipped methods may", written));
   return plugin;
 }
 

@@ -305,7 +305,7 @@ class Host {
       reply["type"] = "state";
       return {reply};
     }
-    throw MethodError(fmt::format("no frame of a worker: \"{}\"", frame.type()));
+    throw MethodError(fmt::format("unexpected frame from the worker: \"{}\"", frame.type()));
   }
 
   // Another one, where check-plugin had the first destroyed.

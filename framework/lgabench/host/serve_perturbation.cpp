@@ -39,7 +39,8 @@ class PerturbationHost {
       drop();
       return channel_.send({{"type", "dropped"}});
     }
-    if (frame.type() != "state") throw MethodError(fmt::format("no frame of a worker: \"{}\"", frame.type()));
+    if (frame.type() != "state")
+      throw MethodError(fmt::format("unexpected frame from the worker: \"{}\"", frame.type()));
     ProcessState state = ProcessState::now().beyond(before_);
     state.flushed = flushed_;
     Json reply = protocol::to_json(state);

@@ -240,7 +240,7 @@ NotedCalls::NotedCalls(int socket) {
     std::memcpy(&received, CMSG_DATA(rights), sizeof received);
     notifier_ = Descriptor(received);
   } else if (got == 1) {
-    to_stdout("refused system calls are not named here: seccomp has no notifier\n");
+    to_stdout("refused system calls cannot be named: seccomp has no notifier here\n");
   }
 }
 

@@ -92,7 +92,7 @@ httplib::Server::HandlerResponse GuardedServer::admit(const Request& request, Re
     return httplib::Server::HandlerResponse::Handled;
   };
   const std::string host = request.get_header_value("Host");
-  if (!contains(hosts_, host)) return refuse(421, "another Host is served here");
+  if (!contains(hosts_, host)) return refuse(421, "this server does not serve that Host");
   if (request.method == "GET" || request.method == "HEAD") return httplib::Server::HandlerResponse::Unhandled;
   if (takes_ == Takes::nothing) return refuse(405, "GET");
   if (request.method != "POST") return refuse(405, "GET or POST");

@@ -77,10 +77,10 @@ static void fields(CellJob& job, Fields& field) {
   field("limits", job.limits);
   field("method", job.method, when(job.method.has_value()));
   if (reader && job.cell.method.is_reference() == job.method.has_value())
-    reader->at("cell").fail("a plugin for a method, and only there");
+    reader->at("cell").fail("\"method\" beside it exactly where a method runs");
   field("acts", job.acts, when(job.acts.has_value()));
   if (reader && job.cell.method.acts.has_value() != job.acts.has_value())
-    reader->at("cell").fail("a plugin for what acts");
+    reader->at("cell").fail("\"acts\" beside it exactly where another method acts");
   field("attributed", job.attributed);
   field("keeps_policy", job.keeps_policy);
   field("axes", job.axes, when(!job.axes.empty()));

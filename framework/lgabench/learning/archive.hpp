@@ -57,7 +57,7 @@ class Archive {
     if (reads_ && at_ != bytes_.size()) fail();
   }
   /// Call it for values that were read and do not fit. @throws InputError, always.
-  [[noreturn]] static void fail() { throw InputError("saved policy: not what this method saves"); }
+  [[noreturn]] static void fail() { throw InputError("saved policy: damaged, or saved by another method"); }
 
  private:
   // A count that is read is no larger than what is left: nothing is made for bytes that are not there.

@@ -179,7 +179,7 @@ Json read_declared_axis(const PluginInfo& plugin, const std::string& declared) {
   try {
     Json json = parse_json(declared, "axis");
     if (json.is_object() && json.contains("version"))
-      JsonReader(json, "axis").fail("no \"version\": it is the plugin's");
+      JsonReader(json, "axis").fail("no \"version\", which the plugin declares");
     json["version"] = plugin.version;
     return axis_json(read_axis(plugin.id, JsonReader(json, "axis")));
   } catch (const InputError& e) {

@@ -44,13 +44,13 @@ Forest::Forest(std::vector<std::string> classes, std::size_t features, std::vect
       const bool good = node.feature == leaf
                             ? node.other < classes_.size()
                             : node.feature < features_ && node.other > i + 1 && node.other < tree.size();
-      if (!good) throw InputError("forest: a node that leads nowhere");
+      if (!good) throw InputError("forest: a node points outside its tree");
     }
   }
 }
 
 std::vector<int> Forest::votes(const std::vector<float>& row) const {
-  if (row.size() != features_) throw InputError("forest: a row of another length");
+  if (row.size() != features_) throw InputError("forest: a row with another number of features");
   std::vector<int> votes(classes_.size());
   for (const Tree& tree : trees_) {
     std::size_t at = 0;

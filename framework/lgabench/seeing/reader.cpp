@@ -58,7 +58,7 @@ std::string Model::bytes() const {
 }
 
 Model Model::of(std::string_view bytes) {
-  if (bytes.substr(0, first_line.size()) != first_line) throw InputError("reader: not one of this version");
+  if (bytes.substr(0, first_line.size()) != first_line) throw InputError("reader: a file of another version");
   bytes.remove_prefix(first_line.size());
   Model model;
   model.object_types = Forest::load(bytes);

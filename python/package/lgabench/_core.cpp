@@ -135,7 +135,7 @@ class Player {
                     : environment_->expert_action();
   }
   const Scene& scene() const {
-    if (!scene_) throw Error("scene: expected a reset() before it, which puts a scene there");
+    if (!scene_) throw Error("scene: expected a reset() before it");
     return *scene_;
   }
   const Scenario& scenario() const { return *scenario_; }
@@ -187,7 +187,7 @@ nb::dict parts(const std::vector<Gap>& gaps) {
 class OneCall {
  public:
   OneCall(std::mutex& mutex, const char* what) : lock_(mutex, std::try_to_lock) {
-    if (!lock_) throw Error(std::string(what) + ": another thread is using it; one environment a thread");
+    if (!lock_) throw Error(std::string(what) + ": another thread is using it; make one environment for each thread");
   }
 
  private:
@@ -391,7 +391,7 @@ std::vector<std::string> engine_ids() {
 NB_MODULE(_core, m) {
   using namespace lgabench;
   nb::exception<EngineError>(m, "EngineError", PyExc_RuntimeError).attr("__doc__") =
-      "The physics engine failed: it cannot be loaded, or a world is not as it must be.";
+      "The physics engine failed: it cannot be loaded, or a world's state is invalid.";
   nb::register_exception_translator([](const std::exception_ptr& thrown, void*) {
     try {
       std::rethrow_exception(thrown);
