@@ -138,11 +138,11 @@ Section selection_errors(const Material& material) {
   if (main.empty()) std::swap(main, others);
   if (main.empty()) return section;
   section.add(reading,
-              Paragraph{{"Errors were made in what each method selected, before it learned: each true feature missing, "
-                         "or each wrong one added, with the probability at the head of the column, the same ones for "
-                         "every method; a larger probability keeps those of a smaller one. Empty: share of episodes "
-                         "for which nothing was left. The slope is that of the line of least squares, with its 95 % "
-                         "interval; – where a row selects nothing."}});
+              Paragraph{{"lgabench made errors in each method's Selection before the method learned: each true feature "
+                         "went missing, or each wrong one was added, with the probability in the column's head. All "
+                         "methods got the same errors, and a larger probability keeps those of a smaller one. Empty: "
+                         "the share of episodes with an empty Selection. The slope is that of the least-squares line, "
+                         "with its 95 % interval; – where a row selects nothing."}});
   for (Grid& grid : main) section.add(everywhere, std::move(grid));
   for (Grid& grid : others) section.add(reading, grid, grid.caption);
   Charts charts, other_arms;

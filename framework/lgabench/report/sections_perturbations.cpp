@@ -281,17 +281,17 @@ Section perturbations(const Material& material) {
   section.add(reading, losses_list(material, all));
   section.add(reading,
               Paragraph{{fmt::format(
-                  "Each level plays the control’s scenes, and is compared with it scene by scene. * marks a "
+                  "Each level plays the control’s scenes and is compared with the control scene by scene. * marks a "
                   "difference beyond chance after Holm’s correction over the {} levels of all axes of its row. "
                   "Whiskers in the figures: the control’s success and the 95 % interval of the change. The area "
                   "is that under the curve from the control to the last level, as a share of what it would be "
-                  "had nothing been lost{}; there is no mean over axes, which differ in what a level is. "
-                  "Unchanged input: episodes in which all that the policy was given is the control’s, to the "
-                  "bit.{}",
+                  "had nothing been lost{}; there is no mean over axes, since their levels differ in kind. "
+                  "Unchanged input: episodes in which the policy’s whole input is bit-identical to the "
+                  "control’s.{}",
                   tests, any_named ? " (levels that are kinds have none)" : "",
                   gives_other_commands(all)
-                      ? " Use of language: the share that took what the other command means where that was "
-                        "given, minus the share that took it in the control."
+                      ? " Use of language: the share of episodes that took what the other command means when it "
+                        "was given, minus that share in the control."
                       : "")}});
   std::vector<Part> with_areas;
   for (const Part& part : all)

@@ -46,9 +46,9 @@ Section regret(const Material& material) {
   }
   section.add(
       reading,
-      Paragraph{{"person_rule weighs all rules of the grammar by Bayes' rule and selects by the likeliest. With "
-                 "choice=scene it takes in each scene what is likeliest by all rules: nobody who knows no more "
-                 "of the person does better, which is the ceiling. One that does so has a regret below 0."}});
+      Paragraph{{"person_rule weighs all rules of the grammar by Bayes' rule and selects by the likeliest rule. With "
+                 "choice=scene it selects in each scene what all rules together make likeliest: this is the "
+                 "ceiling for rows that know no more of the person. A row with this option has a regret below 0."}});
   return section;
 }
 

@@ -348,9 +348,7 @@ Document document_of(const StudyResults& results) {
   const auto note = [&document](const std::string& text) { document.notes.push_back({Note::note, text}); };
   if (record.kind == Kind::rehearsal) note(fmt::format("{}: no number here is a result.", simulated_words));
   if (!record.shown_as_now)
-    note(
-        "People were shown other scenarios or answers than this version of lgabench has; φ̂ is judged by this "
-        "version's.");
+    note("People saw other scenarios or answers than this version of lgabench has; φ̂ is judged by this version's.");
   if (record.protocol->of_pairs()) {
     document.sections = {pairs_section(results), left_out_section(results), questionnaire_section(results)};
     return document;
@@ -358,8 +356,8 @@ Document document_of(const StudyResults& results) {
   note("The paper does not say whether its ± is a standard deviation or a standard error; here both are printed.");
   if (!record.protocol->crossover())
     note(
-        "Everybody answers each command twice: the second time profits from the first, which the order of conditions "
-        "balances only on average.");
+        "Everybody answers each command twice, so the second answer profits from the first; the order of conditions "
+        "balances this only on average.");
   document.sections = {seconds_section(results), commands_section(results), phi_section(results),
                        left_out_section(results), questionnaire_section(results)};
   if (record.protocol->crossover()) document.sections.insert(document.sections.begin() + 1, model_section(results));
