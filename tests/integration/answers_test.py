@@ -294,7 +294,7 @@ class Live(Asking):
         self.assertEqual(len(self.server.asked), 224)
         kept = self.dir / "out/answers" / (digest + ".jsonl")
         kept.rename(self.dir / "kept.jsonl")
-        self.assertIn("its language model's replies are not kept in answers/", self.call("verify", "out", expect=2).stderr)
+        self.assertIn("answers/ lacks the language model's replies", self.call("verify", "out", expect=2).stderr)
         kept.write_bytes(tape.replace(b"Final answer: no", b"Final answer: yes", 1))
         self.assertIn("its SHA-256 is not the one in its name", self.call("verify", "out", expect=2).stderr)
 

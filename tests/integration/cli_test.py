@@ -243,14 +243,14 @@ class Resuming(Case):
         self.call(*RUN)
         (run,) = (self.dir / "runs").iterdir()
         said = self.call(*RUN, "--resume").stderr
-        self.assertIn(f"going on in runs/{run.name}\n", said)
+        self.assertIn(f"resuming the run in runs/{run.name}\n", said)
         self.assertIn("0 cells computed, 4 reused", said)
 
         # As another build leaves it: the same settings, another hash.
         other = run.rename(run.with_name(run.name[:-8] + "0" * 8))
         shutil.rmtree(next((other / "cells").iterdir()))
         said = self.call(*RUN, "--resume").stderr
-        self.assertIn(f"going on in runs/{other.name}\n", said)
+        self.assertIn(f"resuming the run in runs/{other.name}\n", said)
         self.assertIn("1 cell to compute, 3 already computed: about ", said)
         self.assertEqual([p.name for p in (self.dir / "runs").iterdir()], [other.name])
         another = [word if word != "0:2" else "0:3" for word in RUN]

@@ -310,7 +310,7 @@ class Forgeries(Case):
         shutil.rmtree(board.parent / ".git")
         outside = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-test-"))
         self.addCleanup(shutil.rmtree, outside)
-        self.assertIn("--against main: call it in the checkout that has this revision", self.check_request(2, cwd=outside))
+        self.assertIn("--against main: run the command in the checkout that has this revision", self.check_request(2, cwd=outside))
         board.parent.rename(outside / "request")
         (board.parent).symlink_to(outside / "request")
         self.assertIn("request: a symbolic link; a board is in a working tree of git", self.check_request(2))

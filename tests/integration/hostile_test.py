@@ -173,8 +173,8 @@ class Keepers(Harm):
         self.assertIn("finding the causes of failures of fixture_keeper: 3 cells, about ", said)
         for part in "1", "2":
             said = self.play("no", "part" + part, "--shard", part + "/2").stderr
-            self.assertIn("the causes of failures of fixture_keeper are found after the run's last cell: once the parts are merged, "
-                          "by lgabench attribute MERGED\n", said)
+            self.assertIn("the causes of failures of fixture_keeper are found after the run's last cell: merge the parts, "
+                          "then run lgabench attribute MERGED\n", said)
             self.assertEqual(self.causes("part" + part), {None})
         refused = self.call("attribute", "part1", "--plugin-path", "mine_no", expect=2).stderr
         self.assertRegex(refused, r"part1: 1 of its cells have not been played, expected a finished run")
@@ -202,7 +202,7 @@ class Keepers(Harm):
         self.assertEqual(causes["fixture_unsound"], {None})
         # Where a cell is still to be scored, as it failed, nobody is told anything.
         shutil.rmtree(self.dir / "out")
-        self.assertIn("the causes of failures of fixture_keeper are found after the run's last cell: once none fails, or by "
+        self.assertIn("the causes of failures of fixture_keeper are found after the run's last cell: compute the failed cells, or run "
                       "lgabench attribute out\n", play("fixture_keeper", "fixture_faulty+where=learn+how=throw", expect=3))
         self.call("attribute", "out", "--plugin-path", FIXTURES / "faulty")
 
@@ -227,7 +227,7 @@ class Keepers(Harm):
         self.call("verify", "run-attributed", "--all", "--plugin-path", "mine_no")
         self.assert_matches_schemas("run-attributed")
         for words, expect, says in ((["run", "--out", "run-attributed"], 2, "exists already"),
-                                    (["run-attributed", "--out", "x"], 2, "every failure that can be attributed is"),
+                                    (["run-attributed", "--out", "x"], 2, "every failure that can be attributed has its cause"),
                                     (["run", "--rows", "lga", "--out", "x"], 2, "no row lga, the run has: fixture_keeper")):
             self.assertIn(says, self.call("attribute", *words, "--plugin-path", "mine_no", expect=expect).stderr)
 

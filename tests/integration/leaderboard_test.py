@@ -244,7 +244,7 @@ class Submissions(Board):
     def test_outside_of_a_checkout_a_board_is_asked_for(self):
         for action in (["check"], ["build"], ["verify", "--by", "B. Reader"], ["withdraw", "x", "--reason", "y"]):
             self.assertRegex(self.call("leaderboard", *action, expect=2).stderr,
-                             "results/leaderboard: no leaderboard is there; give --board DIR, or call it where")
+                             "results/leaderboard: no leaderboard is there; give --board DIR, or run the command in a checkout")
         self.assertFalse((self.dir / "results").exists())
 
     def test_an_archive_has_what_checks_it_and_the_same_bytes_each_time(self):
@@ -342,7 +342,7 @@ class Refusals(Board):
             rewrite(self.cell(), "episodes.jsonl", lambda e: e if e["success"] else {**e, "attribution": member})
             if why:
                 self.assertRegex(" ".join(self.refused()), "^failures have causes, for which the method was told the truth: "
-                                 "add a run that tells none: fixture_constant")
+                                 "add a run without causes: fixture_constant")
         self.add()
 
     def test_errors_that_were_made_in_what_was_selected(self):

@@ -34,7 +34,7 @@ class OldRuns(Case):
 
     def test_of_a_version_with_other_cells_are_not_gone_on_with(self):
         self.write("0.99.0")
-        for words, said in ((["verify", "old"], r"old: a run of lgabench 0\.99\.0, and this is .*: verify it with 0\.99\.0"),
+        for words, said in ((["verify", "old"], r"old: lgabench 0\.99\.0 made this run, and .* computes other cells; verify it with 0\.99\.0"),
                             (RUN, r"old: a run of lgabench 0\.99\.0, which 0\.\d+\.\d+ cannot resume")):
             self.assertRegex(self.call(*words, expect=2).stderr, said)
 

@@ -239,7 +239,7 @@ class SceneSeed(Case):
         shown = {file.name: file.read_bytes() for file in (self.dir / "cache").iterdir()}
         self.assertTrue(shown)
         said = self.call(*self.RUN, "--scene-seed", "7", "--out", "other").stderr
-        self.assertIn("--scene-seed 7: other test scenes; demonstrations are the same ones, as the training seeds draw them\n", said)
+        self.assertIn("--scene-seed 7: the test scenes are new; the demonstrations stay, as the training seeds draw them\n", said)
         self.assertEqual({file.name: file.read_bytes() for file in (self.dir / "cache").iterdir()}, shown)
         self.assertFalse(self.scenes("own") & self.scenes("other"))
         self.assertEqual(json.loads((self.dir / "other/run.json").read_text())["request"]["scene_seed"], 7)

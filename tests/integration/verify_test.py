@@ -91,7 +91,7 @@ class Verify(BesideOneRun):
         self.assertRegex(said, r"not as recorded:\n  build: liblgabench_learning.so \(00000000 there, [0-9a-f]{8} here\)\n")
         self.assertRegex(self.line_of_the_cell(said), r"^same outcomes .*: from training.jsonl line 1$")
         self.assertIn("\n4 bit-identical, 1 same outcomes\nNOT bit-identical: 1 of 5 cells; 0 of 20 episodes that can be "
-                      "compared ended differently\nOf 1 the record names another build, processor or data: its own word", said)
+                      "compared ended differently\nFor 1 of them the record names another build, processor or data: its own word", said)
         self.assertEqual(said.splitlines()[-1], "verdict: agrees")
         self.assertIn("NOT bit-identical: 1 of 5 cells", self.verify("--all", "--strict", expect=1).stdout)
 

@@ -62,7 +62,7 @@ PluginInfo plugin_of(const JsonReader& job, const KeptPolicy& kept) {
     with_python_method(written, job.at("python").string(), catalogue);
   const PluginInfo& plugin = catalogue.find("method", kept.method);
   if (plugin.version != kept.version)
-    throw InputError(fmt::format("{}: version {}, the kept policy is of version {}", plugin.file.string(),
+    throw InputError(fmt::format("{}: this is version {}, but version {} saved the policy", plugin.file.string(),
                                  plugin.version, kept.version));
   return plugin;
 }

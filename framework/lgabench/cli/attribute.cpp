@@ -47,7 +47,7 @@ int attribute(AttributeArguments a) {
     a.out = fs::path(fs::absolute(a.run / "").lexically_normal().parent_path().string() + "-attributed");
   if (fs::exists(fs::symlink_status(a.out))) throw InputError(a.out.string() + ": exists already");
   const std::vector<Recorded> cells = wanted_cells(a, record);
-  if (cells.empty()) throw InputError(a.run.string() + ": every failure that can be attributed is");
+  if (cells.empty()) throw InputError(a.run.string() + ": every failure that can be attributed has its cause");
   RunPlan plan = plan_again(a.run, record, {cells.front().cell}, a.jobs, a.timeout_s);
   plan.command = "lgabench attribute";
   const std::optional<Causes> causes = find_causes(cells, plan, a.catalogue());
@@ -65,7 +65,7 @@ void add_attribute(CLI::App& app, int& exit) {
   auto a = std::make_shared<AttributeArguments>();
   Verb verb(app, "attribute",
             "Attribute the failures of a finished run to the abstraction, perception or the "
-            "policy, for rows where that was not done");
+            "policy, for rows without attribution");
   verb.option("RUN", a->run, "The run's directory", required);
   verb.option("--rows ROW,...", a->rows, "Rows, by name, separated by commas (default: all rows without attribution)");
   verb.option("--out DIR", a->out, "The directory for the copy (default: RUN-attributed)");
@@ -77,8 +77,8 @@ void add_attribute(CLI::App& app, int& exit) {
       "Example: lgabench attribute runs/q1-leaderboard --rows my_method\nIn the leaderboard's presets and in parts of "
       "a run, a method that did not come with this installation is not told the truth, so its failures are not "
       "attributed. This command computes the cells again, in fresh processes that learn the truth at the end, and "
-      "writes a copy of the run with the causes; it says first how long that will take. A row whose actions are not "
-      "the recorded ones, bit for bit, is left out: exit 1. `leaderboard add` takes the original run.");
+      "writes a copy of the run with the causes; it first prints how long that will take. A row whose actions are not "
+      "bit-identical to the recorded ones is left out: exit 1. Give `leaderboard add` the original run.");
   verb->callback([a, &exit] { exit = attribute(*a); });
 }
 

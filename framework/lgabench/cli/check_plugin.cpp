@@ -93,7 +93,7 @@ std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
   for (const PluginInfo& other : catalogue.plugins)
     if (other.kind == plugin.kind && other.id == plugin.id && other.sha256 != plugin.sha256)
       report.problem("id", fmt::format("{} is also the id of {}", plugin.id, other.file.string()),
-                     "take another: of two with one id the later is refused");
+                     "take another id: of two plugins with one id, the later is refused");
 
   const std::vector<std::string> own = perturbation_ids({});
   if (plugin.kind == "perturbation" && contains(own, plugin.id))
@@ -191,7 +191,7 @@ void add_check_plugin(CLI::App& app, int& exit) {
               required);
   verb.option("--python PROGRAM", a->python, "The interpreter for a plugin in Python", with_default);
   verb.option("--set OPTION=VALUE", a->settings, "An option of the plugin; can be repeated", repeatable);
-  verb.option("--environment ID", a->environment, "The environment to check it in",
+  verb.option("--environment ID", a->environment, "The environment to check the plugin in",
               one_of("environment", environment_ids()));
   verb.option("--timeout SECONDS", a->timeout_s, "Time limit of each of the two processes, in seconds", within(1, 1e6),
               with_default);

@@ -84,7 +84,7 @@ void judge_arm(const Scenario& scenario, const std::string& layout, const std::s
     constexpr std::size_t most = 160;  // some hold a whole distribution
     const std::string reason = e.what();
     return report.problem(where, reason.size() > most ? reason.substr(0, most) + "..." : reason,
-                          "the sets of target, avoid and distractors must leave something to show, and room for it");
+                          "let the sets of target, avoid and distractors leave objects to show, and room for them");
   }
   const Tally oracle = play(environment, scenes, "oracle");
   const Tally any = play(environment, scenes, "random_object");
@@ -106,7 +106,7 @@ void judge_arm(const Scenario& scenario, const std::string& layout, const std::s
     report.note(where, "any visible object is right",
                 "more distractors, or a narrower command, would test abstraction");
   if (bites && 4 * (shared - any.successes) > count)
-    report.note(where, "who takes what shares most with the others finds the target without hearing the command",
+    report.note(where, "the object that shares most with the others is often the target, so the command is not needed",
                 "\"near_miss\" in place of \"hard\" gives objects that share alike");
 }
 
@@ -175,7 +175,8 @@ void add_check_scenario(CLI::App& app, int& exit) {
   verb.option("--layout LAYOUT,...", a->layouts,
               "Layouts of the task, separated by commas (default: those of --suite, else the task's first two)",
               one_of("layout", installed_layouts()));
-  verb.option("--suite SUITE", a->suite, "Check the scenario as this suite plays it: its training scenes, its arms");
+  verb.option("--suite SUITE", a->suite,
+              "Check the scenario as this suite plays it, with its training scenes and arms");
   verb.option("--engine ENGINE", a->engine, "An engine, by plugin id (default: the one that suites use)");
   verb.option("--out FILE", a->out, "The file for the picture (default: SCENARIO.png)");
   add_plugin_path(verb, a->plugin_path);

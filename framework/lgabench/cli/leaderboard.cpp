@@ -52,7 +52,7 @@ int add(const LeaderboardArguments& a) {
 void expect_board(const fs::path& board) {
   if (!fs::is_directory(board))
     throw InputError(fmt::format(
-        "{}: no leaderboard is there; give --board DIR, or call it where lgabench's sources are checked out",
+        "{}: no leaderboard is there; give --board DIR, or run the command in a checkout of lgabench's sources",
         board.string()));
 }
 
@@ -102,7 +102,8 @@ int verify(LeaderboardArguments a) {
       if (!entry.withdrawn.is_null()) continue;
       if (a.verify.fresh && !entry.score.is_null())
         to_stderr(
-            "{}: other scenes of the same commands; nobody is asked about other commands (docs/language-models.md)\n",
+            "{}: --fresh plays new scenes of the same commands; nobody is asked about other commands "
+            "(docs/language-models.md)\n",
             entry.id());
       line = leaderboard::verification(a.board, entry, leaderboard::new_nonce(), catalogue, a.verify);
     } catch (const Error& e) {  // a plugin that is not here, another version, a cell that the host failed
@@ -150,7 +151,7 @@ int scenes(LeaderboardArguments a) {
 int withdraw(const LeaderboardArguments& a) {
   if (a.what.empty() || a.reason.empty()) throw InputError("leaderboard withdraw: expected ENTRY, and --reason WORDS");
   leaderboard::withdraw(a.board, a.what, a.reason, fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))));
-  to_stdout("withdrawn; its files remain\n");
+  to_stdout("the entry is withdrawn; its files remain\n");
   return ok;
 }
 
@@ -196,12 +197,12 @@ void add_leaderboard(CLI::App& app, int& exit) {
   auto a = std::make_shared<LeaderboardArguments>();
   Verb verb(app, "leaderboard", "Add results to a leaderboard, check it, and make its pages");
   const Words actions{"add", "verify", "vouch", "build", "check", "withdraw", "scenes"};
-  verb.option("ACTION add|verify|vouch|build|check|withdraw|scenes", a->action,
-              "add, verify, vouch, build, check, withdraw or scenes", required, one_of("action", actions));
+  verb.option("ACTION add|verify|vouch|build|check|withdraw|scenes", a->action, "The action", required,
+              one_of("action", actions));
   verb.option(
       "WHAT", a->what,
-      "add: a run's directory; verify, vouch, withdraw: an entry's directory or id (verify without one: all entries); "
-      "scenes: likewise (without one: all entries that have no pictures)");
+      "add: a run's directory; verify, vouch, withdraw, scenes: an entry's directory or id (without one, verify takes "
+      "all entries and scenes all without pictures)");
   verb.option("LINE", a->line, "vouch: the number of a line in verifications.jsonl, or `withdrawn`");
   verb.option("--board DIR", a->board, "The leaderboard's directory", with_default);
   verb.below("add and withdraw");
@@ -223,23 +224,23 @@ void add_leaderboard(CLI::App& app, int& exit) {
   verb.option("--python PROGRAM", a->python, "verify, scenes: the interpreter for methods in Python", with_default);
   add_plugin_path(verb, a->plugin_path);
   verb.below("build and check");
-  verb.option(
-      "--against REVISION", a->against,
-      "build, check: a revision of the repository that this is called in; outcomes that it has must not have changed");
-  verb.option("--maintainer", a->maintainer,
-              "build, check: with --against, files that are the maintainers' may differ");
+  verb.option("--against REVISION", a->against,
+              "build, check: a git revision of the checkout you are in; the outcomes in it must not have changed");
+  verb.option("--maintainer", a->maintainer, "build, check: with --against, allow changes to the maintainers' files");
   verb.option("--documents PATH,...", a->documents,
               "build, check: documents that contain tables of the board between markers, or a folder of them");
   verb.option("--archive OUT.tar.gz", a->archive,
-              "build: pack the board into an archive once it is checked, with license and citation");
+              "build: check the board, then pack it into an archive, with license and citation");
   verb->footer(
-      "Example: lgabench leaderboard add runs/q1-leaderboard --entry me.json && lgabench leaderboard build\nadd "
-      "refuses a run that is not the whole preset on the board's scenes, and lists what is missing.\nverify plays "
-      "cells again, confined and without a cache, and records the outcome as a line; vouch makes that line count: "
-      "until then it is only a claim, and the entry has no rank. check only reads files. scenes plays two cells of an "
-      "entry again and draws "
-      "an episode of each.\nExit 1: refused, different, "
-      "or a problem. Exit 2: none of these, but some entry could not be verified or played.");
+      "Example: lgabench leaderboard add runs/q1-leaderboard --entry me.json && lgabench leaderboard build\n"
+      "  add       adds rows of a run; it refuses a run that is not the whole preset on the board's scenes\n"
+      "  verify    plays cells of an entry again, confined and without a cache, and records the outcome\n"
+      "  vouch     makes a recorded outcome count; until then it is a claim, and the entry has no rank\n"
+      "  build     writes the board's pages and tables\n"
+      "  check     compares these with the entries; it only reads files\n"
+      "  withdraw  takes an entry off the board; its files remain\n"
+      "  scenes    plays two cells of an entry again and draws an episode of each\n"
+      "Exit 1: refused, different, or a problem. Exit 2: none of these, but an entry was not verified or played.");
   verb->callback([a, actions, verb = verb.get(), &app, &exit] {
     expect_options_of(*verb, a->action, actions);
     if (!a->what.empty() && (a->action == "build" || a->action == "check"))

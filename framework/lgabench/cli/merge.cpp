@@ -25,13 +25,13 @@ void add_merge(CLI::App& app, int& exit) {
       "Shards of one run, or runs that differ only in methods, scenarios, layouts, engines, demonstrations, seeds "
       "or --selection-errors; they stay as they are",
       required);
-  verb.option("--partial", options->partial, "Exit 0 although parts of the run are not there yet");
+  verb.option("--partial", options->partial, "Exit 0 even if parts of the run are missing");
   verb.option("--json", options->json, "Print summary.json instead of the table");
   verb->footer(
       "Example: lgabench merge runs/q1 runs/q1-1of2 runs/q1-2of2\n"
       "         lgabench merge runs/with_mine runs/q1 runs/q1_my_method\n"
-      "Exit 3: a cell failed, or it was left out because its files are damaged or another build's, or it is in none of "
-      "the runs.");
+      "Exit 3: a cell failed, is in none of the runs, or was left out because its files are damaged or come from "
+      "another build.");
   verb->callback([options, &exit] {
     const MergeOutcome outcome = merge_runs(options->out, options->runs, shell_line(command_line()));
     const std::size_t bad = outcome.failed + outcome.left_out;
@@ -39,8 +39,8 @@ void add_merge(CLI::App& app, int& exit) {
               outcome.left_out, outcome.missing);
     if (bad + outcome.missing > 0)
       to_stderr(
-          "Shards: the command of one of them, with --out {} and without --shard, computes the rest. Other runs: "
-          "resume each, and merge again.\n",
+          "To compute the rest of shards, run the command of one with --out {} and without --shard. Resume other "
+          "runs, and merge again.\n",
           options->out.string());
     if (outcome.finished + outcome.failed > 0) {  // last: it may throw
       print_report(options->out, options->json ? Printed::json : Printed::end);

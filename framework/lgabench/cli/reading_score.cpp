@@ -225,8 +225,8 @@ void print_reading_scores(const Suite& suite, Truth truth, const ReadingArgument
     }
   if (unanswered.empty()) return;
   for (const std::string& question : unanswered) to_stderr("no answer: {}\n", one_line(question));
-  throw MethodError(fmt::format("{} pictures have no reply, and are in no row; the same command asks for these again",
-                                unanswered.size()));
+  throw MethodError(fmt::format(
+      "{} pictures have no reply and are in no row; run the same command to ask about them again", unanswered.size()));
 }
 
 }  // namespace lgabench::cli

@@ -53,7 +53,7 @@ RunRecord record_to_recompute(const fs::path& run, const std::string& verb) {
   expect_run(run);
   RunRecord record = read_run_record(run);
   if (!same_cells(record.version, LGABENCH_VERSION))
-    throw InputError(fmt::format("{}: a run of lgabench {}, and this is {}, which computes other cells: {} it with {}",
+    throw InputError(fmt::format("{}: lgabench {} made this run, and {} computes other cells; {} it with {}",
                                  run.string(), record.version, LGABENCH_VERSION, verb, record.version));
   return record;
 }
@@ -66,9 +66,9 @@ RunPlan plan_again(const fs::path& run, const RunRecord& record, std::vector<Cel
   if (std::holds_alternative<LiveAnswers>(plan.cells.front().answers)) {
     const std::optional<AnswerFile> replies = kept_replies(run);
     if (!replies)
-      throw InputError(fmt::format(
-          "{}: its language model's replies are not kept in answers/, as after a kill; give its command again: {}",
-          run.string(), record.command));
+      throw InputError(
+          fmt::format("{}: answers/ lacks the language model's replies, as after a kill; run its command again: {}",
+                      run.string(), record.command));
     plan.live.emplace().cassette = replies->path;
     plan.live->asks = false;
   }

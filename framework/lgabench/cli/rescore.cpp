@@ -161,7 +161,7 @@ int rescore(const RescoreArguments& a) {
   print(a, rows);
   if (!a.json.empty()) write_file(a.json, lines);
   if (failed) to_stderr("{} failed cells have no episodes\n", failed);
-  if (left_out) to_stderr("{} episodes are left out: nobody could judge them again\n", left_out);
+  if (left_out) to_stderr("{} episodes could not be judged again and are left out\n", left_out);
   return left_out ? cells_failed : ok;
 }
 
@@ -175,26 +175,28 @@ void add_rescore(CLI::App& app, int& exit) {
               "physics: where the recorded action leaves the target; pose: how far the action is from the oracle's",
               one_of("judge", {"physics", "pose"}), with_default);
   auto* position = verb.option("--position-tolerance METRES", a->limits.position_m,
-                               "physics: how far the target's centre may end from where it is asked for (default: the "
-                               "protocol's; where that is an area, it must also be so near to its middle)",
+                               "physics: how far from the asked place the target's centre may end (default: the "
+                               "protocol's; in an asked area, the centre must also be this near to the middle)",
                                within(0, 10));
   const std::function<void(const double&)> turn = [a](const double& degrees) {
     a->limits.angle_deg = a->within.turn_deg = degrees;
   };
-  verb.option("--angle-tolerance DEGREES", turn, "How far a turn may be from the asked one [15]", within(0, 180));
+  verb.option("--angle-tolerance DEGREES", turn, "How far a turn may be from the asked one (default: 15)",
+              within(0, 180));
   const std::function<void(const std::vector<double>&)> tolerate = [a](const std::vector<double>& metres) {
     a->within.begin_m = metres.at(0);
     a->within.end_m = metres.at(1);
   };
-  auto* poses = verb.option("--within BEGIN,END", tolerate,
-                            "pose: how many metres apart the two actions may begin and end [0.07,0.10]", within(0, 10))
-                    ->expected(2);
+  auto* poses =
+      verb.option("--within BEGIN,END", tolerate,
+                  "pose: how many metres apart the two actions may begin and end (default: 0.07,0.10)", within(0, 10))
+          ->expected(2);
   verb.option("--json FILE", a->json, "Also write a line of JSON for each episode (docs/formats)");
   add_plugin_path(verb, a->plugin_path);
   verb->footer(
-      "Carries out the recorded actions on the recorded engine, without the method; nothing in RUN changes. Without\n"
-      "tolerances physics says what was recorded. Episodes that do not end as recorded here, or whose scene cannot be\n"
-      "made again, are named and left out; the exit status is then 3.\n"
+      "rescore carries out the recorded actions on the recorded engine, without the method; RUN does not change. "
+      "Without tolerances, physics gives the recorded verdicts. Episodes that do not end here as recorded, or whose "
+      "scene cannot be made again, are named and left out; the exit status is then 3.\n"
       "Example: lgabench rescore runs/q1 --position-tolerance 0.05 --json rescored.jsonl");
   verb->callback([a, position, poses, &exit] {
     const bool by_pose = a->judge == "pose";

@@ -56,7 +56,7 @@ void print_counts(const RunOutcome& outcome, const RunPlan& plan) {
   to_stderr("{} cells computed, {} reused, {} failed\n", outcome.computed, outcome.reused, outcome.failed.size());
   if (outcome.computed) to_stderr("{}\n", outcome.time.text(plan.pool.jobs));
   if (outcome.elsewhere)
-    to_stderr("shard {}/{}: {} of the run's {} cells are not run here; lgabench merge puts shards together\n",
+    to_stderr("shard {}/{}: {} of the run's {} cells are not run here; lgabench merge combines the shards\n",
               plan.shard.index, plan.shard.count, outcome.elsewhere, plan.cells.size());
 }
 
@@ -86,8 +86,8 @@ bool find_others_causes(const RunPlan& plan, const Catalogue& catalogue, const R
   const bool is_part = plan.shard.count > 1;
   if (is_part || !outcome.failed.empty()) {
     to_stderr("the causes of failures of {} are found after the run's last cell: {}\n", one_line(rows_of(cells)),
-              is_part ? "once the parts are merged, by lgabench attribute MERGED"
-                      : "once none fails, or by lgabench attribute " + shell_line({plan.out.string()}));
+              is_part ? "merge the parts, then run lgabench attribute MERGED"
+                      : "compute the failed cells, or run lgabench attribute " + shell_line({plan.out.string()}));
     return true;
   }
   const RunRecord record = read_run_record(plan.out);
@@ -108,7 +108,7 @@ int run(const RunArguments& a) {
   if (const std::string missing = missing_encoder(commands_of(plan)); !missing.empty())
     to_stderr("note: {}\n", missing);
   if (a.scene_seed && !a.quiet)
-    to_stderr("--scene-seed {}: other test scenes; demonstrations are the same ones, as the training seeds draw them\n",
+    to_stderr("--scene-seed {}: the test scenes are new; the demonstrations stay, as the training seeds draw them\n",
               *a.scene_seed);
   if (a.dry_run) return print_forecast(plan, catalogue, forecast(plan, catalogue));
   if (!a.debug.empty()) return debug_cell(plan, catalogue, a.debug);
@@ -142,7 +142,7 @@ int run(const RunArguments& a) {
   for (const FailedCell& cell : outcome.failed)
     to_stderr("failed: {}: {} ({})\n", one_line(cell.title), one_line(cell.reason), cell.log.string());
   if (!outcome.failed.empty())
-    to_stderr("To compute what failed again, and nothing else:\n  {}\n", resuming_command(a, plan.out));
+    to_stderr("To compute only the failed cells again:\n  {}\n", resuming_command(a, plan.out));
   if (!no_causes.empty()) to_stderr("no causes of failures: {}\n", no_causes);
   if (!no_report.empty())
     to_stderr("no report: {}\n", no_report);

@@ -207,7 +207,7 @@ fs::path run_to_resume(const RunPlan& plan, const std::string& suffix) {
     throw InputError(
         fmt::format("--resume: no run of this command is in {}; without --resume a new run of {} cells begins",
                     plan.out.parent_path().string(), plan.cells.size()));
-  to_stderr("going on in {}\n", there.string());
+  to_stderr("resuming the run in {}\n", there.string());
   return there;
 }
 
@@ -289,35 +289,35 @@ void add_run_options(Verb& verb, RunArguments& a) {
       "use only METHOD's Selections, while the shipped lga+policy=heat_map learns and acts");
   verb.option("--engines ENGINE,...", a.engines, "Engines, by plugin id");
   verb.option("--scenarios SCENARIO,...", a.scenarios, "Scenarios");
-  verb.option("--axes AXIS,...", a.axes, "Only these axes, beside the control; AXIS:LEVEL+LEVEL: some levels");
-  verb.option("--arms ARM,...", a.arms, "Only these arms (lgabench list arms), and each scenario's first");
+  verb.option("--axes AXIS,...", a.axes, "Play only these axes and the control; AXIS:LEVEL+LEVEL: some levels");
+  verb.option("--arms ARM,...", a.arms, "Play only these arms (lgabench list arms) and each scenario's first");
   verb.option("--layout LAYOUT,...", a.layouts,
               "How objects are placed: `lgabench list layouts --of SUITE`; separate several with commas", rare);
   verb.option("--demos N,...", a.demonstrations, "Numbers of demonstrations per seen command, such as 10,20");
   verb.option("--seeds N,...", a.seeds, "Training seeds, such as 0,1,2 or 0:3");
   verb.option(
       "--selection-errors KIND=P,...", a.selection_errors,
-      "Errors to make in what methods select: missing=P drops each true feature with probability P, added=P adds each "
-      "wrong one, added=P+missing=P does both; none",
+      "Errors to make in the methods' Selections: missing=P drops each true feature with probability P, added=P adds "
+      "each wrong one, added=P+missing=P does both; none",
       rare);
   verb.option("--train-on AXIS", a.train_on,
               "Show methods their demonstrations through a perturbation axis: AXIS:LEVEL, or AXIS:any for a level "
               "drawn for each demonstration; not for the leaderboard",
               rare);
   verb.option("--names SOURCE,...", a.names,
-              "Where the names of what methods see come from: simulator; read from the picture as it is, read_balanced "
-              "once its light is taken out, read_drawn by what learned from drawn light, noise and distance, "
-              "read_robust with both; or a perceiver plugin's id",
+              "The source of the object names that methods see: simulator; read: read from the picture as it is; "
+              "read_balanced: without its light; read_drawn: by a reader that learned from drawn light, noise and "
+              "distance; read_robust: both; or a perceiver plugin's id",
               rare);
   verb.option("--segments SOURCE,...", a.segments,
-              "Where their segments come from: simulator; difference from the empty place", rare);
+              "The source of the segments that methods see: simulator; difference: from the empty place", rare);
   verb.option("--episodes N", a.episodes, "Test scenes per arm");
   verb.option("--scene-seed N", a.scene_seed,
               "Draw other test scenes, from this seed; demonstrations follow --seeds. Not for presets of the "
               "leaderboard",
               rare);
   verb.option("--set M.OPTION=VALUE", a.settings,
-              "METHOD.OPTION=VALUE, or *.OPTION=VALUE for every method that has the option; overrides the preset's, "
+              "Set METHOD.OPTION, or *.OPTION for every method that has the option; this overrides the preset's value, "
               "not a row's own; can be repeated");
   verb.option(
       "--answers SOURCE", a.answers,
@@ -375,18 +375,18 @@ void add_run_options(Verb& verb, RunArguments& a) {
       "Compute one cell in the foreground and unconfined: a plugin under gdb, Python with breakpoint() working; "
       "results are not kept. KEY: the first digits of the cell's key (--debug list prints all keys)",
       rare);
-  verb.option("--dry-run", a.dry_run, "Compute nothing; print how many cells, hours and bytes it would be");
+  verb.option("--dry-run", a.dry_run, "Compute nothing; print the run's cells, hours and bytes");
   verb.below("Output");
   verb.option("--out DIR", a.out, "Run directory (default: runs/SUITE-PRESET-HASH, with -IofN appended for a shard)");
   verb.option("--cache DIR", a.cache,
-              "Where demonstrations are kept (default: $LGABENCH_CACHE, else ~/.cache/lgabench)", rare);
+              "The folder of kept demonstrations (default: $LGABENCH_CACHE, else ~/.cache/lgabench)", rare);
   verb.option("--keep-policy", a.keep_policy,
-              "Keep what each computed cell learned, as its file policy.bin, which lgabench.load_policy() of the "
-              "Python package acts with; a method that cannot be saved says so in its cell's log",
+              "Keep the policy that each computed cell learned in its file policy.bin, for lgabench.load_policy() of "
+              "the Python package; if a method cannot be saved, its cell's log says so",
               rare);
   auto* json = verb.option("--json", a.json, "Print summary.json instead of the means");
   verb.option("--tables", a.tables, "Print every table of the report instead of the means")->excludes(json);
-  verb.option("--quiet", a.quiet, "Print no progress, and of the means the table alone");
+  verb.option("--quiet", a.quiet, "Print only the table of means, and no progress");
 }
 
 }  // namespace lgabench::cli

@@ -113,15 +113,15 @@ void print_other_bytes(const std::vector<Compared>& cells) {
     episodes += cell.agreement.episodes;
   }
   for (const report::PooledAgreement& pool : report::pooled(agreements(cells)))
-    to_stdout("{}: {} episodes succeeded only there, {} only here, over {} cells (McNemar {}){}\n",
+    to_stdout("{}: {} episodes succeeded only in the record, {} only here, over {} cells (McNemar {}){}\n",
               pool.row.empty() ? "all rows" : pool.row, pool.only_recorded, pool.only_recomputed, pool.cells,
               report::p_text(pool.p_holm), pool.differs() ? ": differs" : "");
   to_stdout("NOT bit-identical: {} of {} cells; {} of {} episodes that can be compared ended differently\n", others,
             cells.size(), flips, episodes);
   if (const auto excused = others - differing(cells))
     to_stdout(
-        "Of {} the record names another build, processor or data: its own word, which proves nothing.\n"
-        "The recorded build, on such a processor, gives the same bytes.\n",
+        "For {} of them the record names another build, processor or data: its own word, which proves nothing.\n"
+        "To get the same bytes, verify with the recorded build on the recorded processor.\n",
         excused);
   to_stdout("verdict: {}\n", to_string(report::verdict_of(agreements(cells))));
 }
@@ -237,12 +237,12 @@ void add_verify(CLI::App& app, int& exit) {
   verb.option("--strict", a->strict, "Demand the same bytes whatever build the record names: exit 1 instead of 5");
   add_pool(verb, a->jobs, a->timeout_s);
   verb->footer(
-      "Example: lgabench verify runs/q1 --sample 5\nSays of each cell: bit-identical, same outcomes, other outcomes, "
-      "or differs. With the recorded build, processor and data the bytes must be the same. Where the record names "
-      "others, the verdict over all cells is \"agrees\" if at most 1 % of the episodes ended differently, and in no "
-      "row more of them in one direction than chance allows.\nExit 0: every cell is bit-identical. Exit 1: the verdict "
-      "is \"differs\", or a cell was edited. Exit 5: it is \"agrees\": bytes differ, and the record names another "
-      "build, processor or data.");
+      "Example: lgabench verify runs/q1 --sample 5\nverify calls each cell bit-identical, same outcomes, other "
+      "outcomes, or differs. With the recorded build, processor and data the bytes must be the same. If the record "
+      "names others, the verdict over all cells is \"agrees\" if at most 1 % of the episodes ended differently, and no "
+      "row has more of them in one direction than chance allows.\nExit 0: every cell is bit-identical. Exit 1: the "
+      "verdict is \"differs\", or a cell was edited. Exit 5: the verdict is \"agrees\": bytes differ, and the record "
+      "names another build, processor or data.");
   verb->callback([a, &exit] { exit = verify(*a); });
 }
 

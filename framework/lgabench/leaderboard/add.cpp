@@ -209,8 +209,7 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Catalogu
     } else if (result.failed && result.fault != "plugin") {
       reasons.add(fmt::format("failed by the {}, not by the method: {}: {}", result.fault, title, result.reason));
     } else if (!may_be_told && is_attributed(result)) {
-      reasons.of_cell("failures have causes, for which the method was told the truth: add a run that tells none",
-                      title);
+      reasons.of_cell("failures have causes, for which the method was told the truth: add a run without causes", title);
     } else {
       entry.cells.push_back(played_cell(result, run.directory / "cells" / result.key, key(cell), entry));
       data.update(cell.data);

@@ -101,7 +101,7 @@ std::map<std::string, std::string> files_at(const std::string& revision, const f
   fs::path here = fs::current_path();
   while (!is_working_tree(here) && here != here.root_path()) here = here.parent_path();
   if (!is_working_tree(here))
-    throw InputError(fmt::format("--against {}: call it in the checkout that has this revision; {} is in none",
+    throw InputError(fmt::format("--against {}: run the command in the checkout that has this revision; {} is in none",
                                  revision, fs::current_path().string()));
   const auto expected = [&](const std::optional<std::string>& said) {
     if (!said)

@@ -112,9 +112,9 @@ Spans headline(const Material& material, const AboutSuite& about) {
   const std::string& first = methods.front();
   const Row& row = *row_of(first);
   Spans spans{
-      {fmt::format("{}, {}{}: {} succeeds in ", table.title(mean_scenario),
-                   table.demonstrations_text(column->demonstrations),
-                   table.arms.size() > 1 ? ", arm \"" + table.arm_head(column->arm) + '"' : "", material.styles.name(first))},
+      {fmt::format(
+          "{}, {}{}: {} succeeds in ", table.title(mean_scenario), table.demonstrations_text(column->demonstrations),
+          table.arms.size() > 1 ? ", arm \"" + table.arm_head(column->arm) + '"' : "", material.styles.name(first))},
       Span::number(fixed(*row.success), place_of(row, "success"), Emphasis::strong),
       {" of the episodes"}};
   spans.front().text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(spans.front().text.front())));

@@ -226,7 +226,7 @@ Protocol read_protocol(const fs::path& file) {
   if (consent.empty() || consent.has_parent_path()) reader.at("consent").fail("a file's name, beside the protocol");
   protocol.consent = read_file(file.parent_path() / consent, Links::followed, 1 << 20);
   if (protocol.consent.find_first_not_of(" \t\r\n") == std::string::npos)
-    throw InputError((file.parent_path() / consent).string() + ": expected what people are to agree to; it is empty");
+    throw InputError((file.parent_path() / consent).string() + ": expected the text of the consent, got an empty file");
   canonical(protocol.consent);  // UTF-8, or an InputError
   read_design(reader, protocol);
   read_rules(reader, protocol);
