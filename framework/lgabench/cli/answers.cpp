@@ -199,28 +199,27 @@ void add_answers(CLI::App& app, int& exit) {
                                 "Write a line of JSON for each question, with the messages for the model")
                         ->needs(suite);
   verb.option("--form flat|structured", a->form,
-              "flat: yes or no of each object type and texture; structured: what each command means",
+              "flat: ask yes or no about each object type and texture; structured: ask what each command means",
               one_of("form", forms), with_default)
       ->needs(questions);
   verb.option("--batch", a->batch,
-              "Write a batch file instead, as OpenAI's API takes it: a request for --model in each line")
+              "Write a batch file for OpenAI's API instead, with one request to --model in each line")
       ->needs(questions);
   add_scenario_path(verb);
   verb.below("Replies");
   auto* from = verb.option("--from FILE", a->from,
-                           "The lines of --questions, each with the `reply` that came, or a batch's output; with the "
-                           "Python package also a log of Inspect or lm-evaluation-harness")
+                           "The file of replies: the lines of --questions, each with its `reply`; a batch's output; "
+                           "or, with the Python package, a log of Inspect or lm-evaluation-harness")
                    ->excludes(questions)
                    ->excludes(suite);
   verb.option("--cassette FILE", a->cassette, "The file to append the replies to, for --answers cassette:FILE")
       ->needs(from);
   verb.option("--model MODEL", a->model, "The model that replied; with --batch the one to ask");
-  verb.option("--request JSON", a->request,
-              "How its requests differ from lgabench's own, as for lgabench select --answers openai");
+  verb.option("--request JSON", a->request, "A JSON merge patch applied to each request, as in lgabench select");
   verb->footer(
-      "A reply without an answer is named and left out; one without a meaning that can be read selects nothing.\n"
-      "docs/language-models.md says how harnesses ask.\nExample: lgabench answers words --form structured --questions "
-      "words.jsonl\n         lgabench answers words --batch --model M --questions batch.jsonl\n"
+      "A question without an answer is named and left out. A reply whose meaning cannot be read selects nothing.\n"
+      "docs/language-models.md says how an evaluation harness asks.\nExample: lgabench answers words --form structured "
+      "--questions words.jsonl\n         lgabench answers words --batch --model M --questions batch.jsonl\n"
       "         lgabench answers --from replied.jsonl --model M --cassette M.jsonl");
   verb->callback([a, &exit] {
     if (a->questions.empty() == a->from.empty())

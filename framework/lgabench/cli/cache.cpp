@@ -69,13 +69,13 @@ void add_cache(CLI::App& app, int& exit) {
   };
   auto a = std::make_shared<CacheArguments>();
   Verb verb(app, "cache", "Show how large the cache of demonstrations is, or empty it");
-  verb.option("what size|clear", a->what, "size: print it; clear: remove its files",
+  verb.option("what size|clear", a->what, "size: print the cache's size; clear: remove its files",
               one_of("action", {"size", "clear"}));
-  verb.option("--cache DIR", a->directory, "Its directory (default: $LGABENCH_CACHE, else ~/.cache/lgabench)");
+  verb.option("--cache DIR", a->directory, "The cache's directory (default: $LGABENCH_CACHE, else ~/.cache/lgabench)");
   verb.option("--json", a->json, "Print one JSON object");
   verb->footer(
-      "Demonstrations that were removed are made again when a run needs them. A cell that is running at the time loses "
-      "nothing but time.\nExample: lgabench cache clear");
+      "A run makes removed demonstrations again when it needs them. A cell that is running at the time loses nothing "
+      "but time.\nExample: lgabench cache clear");
   verb->callback([a, &exit] {
     exit = cache(a->directory.empty() ? default_cache() : fs::path(a->directory), a->what == "clear", a->json);
   });

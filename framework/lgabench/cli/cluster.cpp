@@ -198,9 +198,10 @@ void add_cluster(CLI::App& app, int& exit) {
   verb.option("--timings RUN", a->timings,
               "A run, for instance of the preset smoke, whose times are used to predict the duration");
   verb->footer(
-      "Example: lgabench cluster q1 --preset leaderboard --elements 40 --time 02:00:00 --out runs/q1\nWrites three "
-      "scripts into --out: array.sbatch, merge.sbatch (which merges the parts and makes the report) and submit. It "
-      "submits nothing itself.\nTakes the options of `lgabench run` too, but for --fresh, --dry-run and --debug.");
+      "Example: lgabench cluster q1 --preset leaderboard --elements 40 --time 02:00:00 --out runs/q1\ncluster writes "
+      "three scripts into --out: array.sbatch, merge.sbatch (which merges the parts and makes the report) and submit. "
+      "It submits nothing itself.\ncluster takes the options of `lgabench run` too, except --fresh, --dry-run and "
+      "--debug.");
   verb->callback([a, &exit] { exit = write_scripts(*a); });
 }
 

@@ -31,8 +31,8 @@ void add_compare(CLI::App& app, int& exit) {
             "Compare two runs scene by scene: success and seconds of each row; exit 1 if B is worse beyond chance");
   verb.option("A", options->a, "A run's directory", required);
   verb.option("B", options->b,
-              "Another run's directory, with the same suite and number of episodes; with --rows it may be left "
-              "out and is then A");
+              "Another run's directory, with the same suite and number of episodes; with --rows you may leave "
+              "it out, to compare two rows of A");
   verb.option("--rows ROW_A,ROW_B", options->rows,
               "Compare a row of A with a row of B, whatever their methods and options")
       ->expected(2);
@@ -41,8 +41,8 @@ void add_compare(CLI::App& app, int& exit) {
   verb->footer(
       "Example: lgabench compare runs/before runs/after\n         lgabench compare runs/paper runs/mine --rows "
       "lga,my_method\nThe verdict comes first: whether a row is worse beyond chance, or a cell of A fails in B or is "
-      "missing there.\nExit 1: any of these; with --rows, cells may be missing.\nRows are paired by method and "
-      "options, not by name. Cells that played other scenes are listed, not compared.");
+      "missing there.\nExit 1: one of these holds; with --rows, missing cells do not count.\nRows are paired by method "
+      "and options, not by name. Cells that played other scenes are listed, not compared.");
   verb->callback([options, &exit] {
     std::optional<report::RowPair> rows;
     if (!options->rows.empty()) rows = report::RowPair{options->rows[0], options->rows[1]};

@@ -89,7 +89,7 @@ void add_demos(CLI::App& app, int&) {
   verb.option("scenario SCENARIO", a->scenario, "A scenario's id; scenes are drawn from its true distribution");
   verb.below("What is demonstrated");
   verb.option("--selection FILE", a->selection,
-              "Draw targets from what a method selected instead: the selection.json of a cell");
+              "Draw targets from a method's Selection instead, the selection.json of a cell");
   verb.option("--layout LAYOUT", a->layout,
               "How objects are placed: one of `lgabench list layouts --of SCENARIO` (default: the first)",
               one_of("layout", installed_layouts()));
@@ -98,17 +98,17 @@ void add_demos(CLI::App& app, int&) {
   verb.option("--noisy N", a->noisy, "DART: number of noisy rollouts per demonstration", CLI::Range(0, 1000),
               with_default);
   verb.option("--noise SIGMA", a->noise,
-              "DART: standard deviation of the noise in the last rollout; it grows linearly up to there", within(0, 10),
-              with_default);
+              "DART: standard deviation of the noise in the last rollout; the noise grows linearly up to it",
+              within(0, 10), with_default);
   verb.option("--engine ENGINE", a->engine, "An engine, by plugin id (default: the one that suites use)");
   add_plugin_path(verb, a->plugin_path);
   add_scenario_path(verb);
   verb.below("Files");
   auto* out = verb.option("--out FILE", a->out, "The HDF5 file to write");
-  verb.option("--inspect FILE", a->inspect, "Print what a file of demonstrations holds")->excludes(out);
+  verb.option("--inspect FILE", a->inspect, "Print the contents of a file of demonstrations")->excludes(out);
   verb->footer(
-      "Example: lgabench demos heart --n 10 --out heart.hdf5\nAs a method of a run got them: lgabench demos heart "
-      "--selection runs/NAME/cells/KEY/selection.json --out lga.hdf5");
+      "Example: lgabench demos heart --n 10 --out heart.hdf5\nThe demonstrations that a method of a run got: lgabench "
+      "demos heart --selection runs/NAME/cells/KEY/selection.json --out lga.hdf5");
   verb->callback([a] { a->inspect.empty() ? write(*a) : inspect(a->inspect); });
 }
 

@@ -62,14 +62,14 @@ void draw(const DrawArguments& a) {
 void add_drawn_commands(CLI::App& app, int& exit) {
   auto a = std::make_shared<DrawArguments>();
   Verb verb(app, "commands", "Draw new commands with their meanings and scenes, as a suite");
-  verb.option("--seed SEED", a->request.seed, "What the draw depends on: the same seed, the same commands", required);
-  verb.option("--n N", a->request.commands, "How many commands, of eight families in turn", CLI::Range(1, 100000),
+  verb.option("--seed SEED", a->request.seed, "Seed of the draw; the same seed gives the same commands", required);
+  verb.option("--n N", a->request.commands, "Number of commands, from eight families in turn", CLI::Range(1, 100000),
               with_default);
-  verb.option("--parts P", a->request.parts, "Of how many descriptions a compound command is made: how hard it is",
+  verb.option("--parts P", a->request.parts, "Number of descriptions in a compound command; more are harder",
               CLI::Range(drawn::fewest_parts, drawn::most_parts), with_default);
   verb.option("--lexicon FILE", a->lexicon,
-              "A file of words and what they hold; by default the shipped lexicon of household");
-  verb.option("--persons N", a->persons, "Draw so many persons with rules that they do not say, in place of commands",
+              "A file of words and their meanings (default: the shipped lexicon of household)");
+  verb.option("--persons N", a->persons, "Draw N persons with rules that they do not say, instead of commands",
               CLI::Range(1, 100000))
       ->excludes("--n")
       ->excludes("--parts")

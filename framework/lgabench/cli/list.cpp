@@ -218,8 +218,8 @@ void add_list(CLI::App& app, int& exit) {
               fmt::format("Print only the names of one kind, one per line: {}", fmt::join(kinds, ", ")),
               one_of("kind", {kinds.begin(), kinds.end()}));
   verb.option("--of SUITE", arguments->of,
-              "With KIND: only those that a run of this suite accepts; for layouts and sources also a scenario's");
-  verb.option("--short", arguments->is_short, "Print a line for each: its id, and a title of a few words");
+              "With KIND: only names that a run of this suite accepts; for layouts and sources, a scenario's too");
+  verb.option("--short", arguments->is_short, "Print one line for each entry: its id and a short title");
   verb.option("--json", arguments->json, "Print one JSON object");
   add_plugin_path(verb, arguments->directories, any_plugin);
   add_python(verb, arguments->python);

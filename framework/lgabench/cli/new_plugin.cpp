@@ -107,16 +107,16 @@ void new_plugin(const NewPluginArguments& a) {
 void add_new_plugin(CLI::App& app, int& exit) {
   auto a = std::make_shared<NewPluginArguments>();
   Verb verb(app, "new-plugin", "Write a working project for a new plugin, for you to change");
-  verb.option("name NAME", a->name, "Its id: lower-case letters, digits, underscores", required);
+  verb.option("name NAME", a->name, "The plugin's id: lower-case letters, digits, underscores", required);
   verb.option("--kind method|engine|perturbation|perceiver|python", a->kind,
               "method, engine, perturbation or perceiver; python: a method in Python",
               one_of("kind", {"method", "engine", "perturbation", "perceiver", "python"}), with_default);
   verb.option("--language c++|python", a->language, "c++, or python for a method, a perturbation or a perceiver",
               one_of("language", {"c++", "python"}), with_default);
   verb.option("--with torch|opencv", a->with,
-              "A method in C++ that also links LibTorch, with a network to start from, or OpenCV",
+              "For a method in C++: also link LibTorch, with a network to start from, or OpenCV",
               one_of("with", {"torch", "opencv"}));
-  verb.option("--directory DIR", a->directory, "Where to write it (default: ./NAME); it must not exist yet");
+  verb.option("--directory DIR", a->directory, "The project's directory (default: ./NAME); it must not exist yet");
   verb->footer("Example: lgabench new-plugin my_method && cd my_method && cmake --workflow --preset release");
   verb->callback([a, &exit] {
     new_plugin(*a);

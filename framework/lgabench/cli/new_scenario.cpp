@@ -154,13 +154,15 @@ void add_scenario_options(Verb& verb, NewScenario& a) {
               "Object types that the command means, ALL, or \"ALL but TYPE,...\"; asked for if left out", repeatable);
   verb.option("--textures TEXTURE,...", a.textures, "Their textures, ALL, or \"ALL but TEXTURE,...\"", repeatable);
   verb.option("--also SET", a.also,
-              "What it means besides: TYPE,.../TEXTURE,..., or TYPE,... of any texture; can be repeated", repeatable);
-  verb.option("--which RULE", a.rule, "Of several that it means, the one that this rule tells");
-  verb.option("--of SET", a.of, "left_of, right_of, nearest_to, farthest_from: of what, TYPE,.../TEXTURE,...");
-  verb.option("--order NAME,...", a.order, "first_in: object types or textures, the first of which is the one",
+              "Another set that it means: TYPE,.../TEXTURE,..., or TYPE,... of any texture; can be repeated",
               repeatable);
-  verb.option("--words SET", a.words, "What the words alone would mean, where the person takes less of it");
-  verb.option("--other-types TYPE,...", a.other_types, "Object types of what a sweep must not touch", repeatable);
+  verb.option("--which RULE", a.rule,
+              "Which one of several objects it means: leftmost, rightmost, left_of, right_of, nearest_to, "
+              "farthest_from or first_in");
+  verb.option("--of SET", a.of, "left_of, right_of, nearest_to, farthest_from: the other object, TYPE,.../TEXTURE,...");
+  verb.option("--order NAME,...", a.order, "first_in: object types or textures; the first of them wins", repeatable);
+  verb.option("--words SET", a.words, "The set that the words alone mean, if the person takes less of it");
+  verb.option("--other-types TYPE,...", a.other_types, "Object types that a sweep must not touch", repeatable);
   verb.option("--other-textures TEXTURE,...", a.other_textures, "Their textures, or ALL", repeatable);
   verb.option("--space SPACE", a.space,
               "The feature space, whose words you may use (lgabench render --gallery objects draws them)",
@@ -174,15 +176,15 @@ void add_scenario_options(Verb& verb, NewScenario& a) {
   verb.option("--near-miss", a.near_miss,
               "Add an arm of near misses: all other objects share the target's type or texture, and each other's");
   verb.option("--careless SET", a.careless,
-              "What a careless reading would keep, TYPE,.../TEXTURE,...: one is in every test scene; can be repeated",
+              "A set that a careless reading keeps, TYPE,.../TEXTURE,...: each test scene shows one; can be repeated",
               repeatable);
   verb.option("--undecided SET", a.undecided,
-              "What people would not agree on, TYPE,.../TEXTURE,...: never drawn; can be repeated", repeatable);
+              "A set that people disagree on, TYPE,.../TEXTURE,...: no scene shows it; can be repeated", repeatable);
 }
 
 void add_new_scenario(CLI::App& app, int& exit) {
   auto a = std::make_shared<NewScenarioArguments>();
-  Verb verb(app, "new-scenario", "Write a tabletop scenario of your own: a command, what it means, its scenes");
+  Verb verb(app, "new-scenario", "Write a tabletop scenario of your own: a command, its meaning, its scenes");
   verb.option("name NAME", a->name, "The scenario's id, and the name of its file", required);
   verb.option("--directory DIR", a->directory, "The directory for the file", with_default);
   add_scenario_options(verb, *a);

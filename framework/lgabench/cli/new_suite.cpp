@@ -150,18 +150,17 @@ void new_suite(NewSuiteArguments a) {
 
 void add_new_suite(CLI::App& app, int& exit) {
   auto a = std::make_shared<NewSuiteArguments>();
-  Verb verb(app, "new-suite", "Write a suite of your own: scenarios, what it asks, a first look, a claim");
+  Verb verb(app, "new-suite", "Write a suite of your own: scenarios, a question, a preset smoke, a claim");
   verb.option("name NAME", a->own.name, "The suite's id; its own scenario is NAME_1", required);
-  verb.option("--directory DIR", a->directory, "Where to write it (default: ./NAME); it must not exist yet");
-  verb.option("--title TEXT", a->title, "What pages call it (default: NAME)");
-  verb.option("--question TEXT", a->question, "What it asks");
+  verb.option("--directory DIR", a->directory, "The suite's directory (default: ./NAME); it must not exist yet");
+  verb.option("--title TEXT", a->title, "The suite's title on pages (default: NAME)");
+  verb.option("--question TEXT", a->question, "The question that the suite asks");
   verb.option("--scenarios SCENARIO,...", a->scenarios,
-              "Scenarios that there are; beside them, or without, one of its own is written");
+              "Existing scenarios; without them, or with --command, new-suite writes one of the suite's own");
   add_scenario_options(verb, a->own);
   verb->footer(
-      "Own scenarios are as `new-scenario` writes them. Rows: the truth, GCBC-SEG, which sees all, and, where answers "
-      "are\n"
-      "recorded for all scenarios, LGA.\n"
+      "new-suite writes the suite's own scenario as `new-scenario` does. The rows are the truth; GCBC-SEG, which sees "
+      "all; and LGA, if answers are recorded for all scenarios.\n"
       "Examples\n"
       "  lgabench new-suite round_things --command \"Bring me something round.\" --types round,ring --hard\n"
       "  lgabench new-suite my_suite --title \"Hearts and letters\" --scenarios heart,letter");

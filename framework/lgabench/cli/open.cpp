@@ -103,8 +103,9 @@ void add_open(CLI::App& app, int& exit) {
   auto where = std::make_shared<fs::path>();
   Verb verb(app, "open", "Open a run's report in a browser, or a page over all runs");
   verb.option("RUN", *where,
-              "A run, whose report is made where it is missing; or a directory, whose runs are served on this "
-              "machine alone, on a page that renews itself while they compute (default: runs, else this directory)");
+              "A run: open shows its report, and makes one if there is none. A directory: open serves its runs on "
+              "this machine alone, on a page that renews itself while they compute (default: runs, else this "
+              "directory)");
   verb->footer(
       "Examples\n"
       "  lgabench open runs/q1-smoke-1a2b3c4d    its report.html\n"

@@ -88,9 +88,9 @@ void add_render(CLI::App& app, int&) {
   verb.option("--out FILE", arguments->out, "The file for the picture (default: SCENARIO-INDEX.png or GALLERY.png)");
   verb.below("What is drawn");
   verb.option("--gallery objects|textures|scenes|words|perturbations|ENVIRONMENT|FILE.json", arguments->gallery,
-              "Draw one sheet instead: all objects, all textures, or a scene of every scenario (words: of the "
-              "suite words; perturbations: one along each axis; or of those of one environment); or the objects "
-              "of a file, a list of {\"scenario\", \"object_type\", \"texture\"}",
+              "Draw one sheet instead. objects, textures: all of them; scenes: one of every scenario; words: one of "
+              "each scenario of the suite words; perturbations: one along each axis; ENVIRONMENT: one of each of its "
+              "scenarios; FILE.json: the objects of a list of {\"scenario\", \"object_type\", \"texture\"}",
               [known = one_of("gallery", galleries)](std::string what) {
                 return fs::path(what).extension() == ".json" ? std::string() : known(what);
               })
@@ -107,7 +107,7 @@ void add_render(CLI::App& app, int&) {
   verb.option("--arm ARM", arguments->arm,
               "An arm of the scenario's test (lgabench info SCENARIO), or train (default: its first arm)");
   verb.option("--suite SUITE", arguments->suite,
-              "Draw the scenario as this suite plays it: its arms; in a suite with variants, name the scenario "
+              "Draw the scenario as this suite plays it, with its arms; in a suite with variants, name the scenario "
               "SCENARIO_VARIANT");
   verb.option("--truth released|printed", arguments->truth,
               "Which true distributions to use where released and printed ones differ",

@@ -232,13 +232,13 @@ void add_replay(CLI::App& app, int&) {
   verb.option("run RUN", a->run, "The run's directory", required);
   verb.option("episodes KEY/ARM/INDEX", a->episodes,
               "The cell's key or its first digits, the arm, and the scene's number; without an arm, the "
-              "scenario's first arm. Several are drawn beside each other, after what each policy sees",
+              "scenario's first arm. Several episodes are drawn side by side, after the input of each policy",
               required);
   verb.option("--out FILE", a->out, "FILE.gif for an animation, FILE.png for a film strip", required);
   add_plugin_path(verb, a->plugin_path);
   verb->footer(
-      "Carries out the recorded action on the recorded engine, without the method. Pink marks where the suction cup "
-      "holds, or the spatula. Several episodes are slowed down.\nExample: lgabench replay runs/q1 752bdc8e/test/3 "
+      "replay carries out the recorded action on the recorded engine, without the method. Pink marks the suction cup's "
+      "hold or the spatula. Several episodes are slowed down.\nExample: lgabench replay runs/q1 752bdc8e/test/3 "
       "--out "
       "episode.gif");
   verb->callback([a] { replay(*a); });

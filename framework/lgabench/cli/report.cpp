@@ -108,9 +108,10 @@ void add_report(CLI::App& app, int& exit) {
   auto options = std::make_shared<Options>();
   Verb verb(app, "report", "Make a run's tables, figures and report.html anew from its cells, and print the tables");
   verb.option("RUN", options->runs,
-              "The run's directory; given several, such as runs/*, it also writes a page that compares them", required);
+              "The run's directory; for several, such as runs/*, report also writes a page that compares them",
+              required);
   verb.option("--index FILE.html", options->index,
-              "Where to write that page (default: index.html beside the first run)");
+              "The page that compares several runs (default: index.html beside the first run)");
   verb.option("--format text|md|latex|json|csv", options->format, "What to print; latex is every table",
               one_of("format", {"text", "md", "latex", "json", "csv"}), with_default);
   auto* claims = verb.option("--claims", options->claims,
@@ -122,19 +123,20 @@ void add_report(CLI::App& app, int& exit) {
       ->expected(2)
       ->excludes(claims);
   verb.option("--judge physics|pose", options->judge,
-              "How to judge episodes: physics, as they were played; or pose, which counts an action as a success "
-              "if it is the oracle's up to --within, and only prints, writing no files",
+              "How to judge episodes. physics: as they were played; pose: an action is a success if it is the oracle's "
+              "up to --within; pose prints and writes no files",
               one_of("judge", {"physics", "pose"}), with_default);
   const std::function<void(const std::vector<double>&)> tolerate = [options](const std::vector<double>& metres) {
     options->tolerance.begin_m = metres.at(0);
     options->tolerance.end_m = metres.at(1);
   };
   auto* within_m = verb.option("--within BEGIN,END", tolerate,
-                               "With --judge pose: how many metres apart the two actions may begin and end [0.07,0.10]",
+                               "With --judge pose: how many metres apart the two actions may begin and end (default: "
+                               "0.07,0.10)",
                                within(0, 10))
                        ->expected(2);
   verb->footer(
-      "Writes RUN/report.html (one page that needs no other file), report.md, summary.json, summary.csv,\n"
+      "report writes RUN/report.html (one page that needs no other file), report.md, summary.json, summary.csv, "
       "episodes.csv, claims.json, each figure as SVG and PDF (figures/), each table as LaTeX and CSV (tables/).\n"
       "Example: lgabench report runs/q1-smoke --format csv > table.csv\n"
       "         xdg-open runs/q1-smoke/report.html\n"

@@ -255,23 +255,25 @@ void add_select(CLI::App& app, int&) {
   verb.option("--space SPACE", arguments->space, "The feature space, for a command in quotes", with_default);
   add_scenario_path(verb);
   auto* score = verb.option("--score", arguments->score,
-                            "With --suite: no policy, but how exactly the answers keep what is meant in test scenes, "
-                            "asked yes or no of each feature, asked what the command means, and the names in it")
+                            "With --suite: score, without a policy, how exactly the answers keep the meant objects in "
+                            "test scenes: asked yes or no about each feature, asked what the command means, and "
+                            "the names in the command alone")
                     ->needs("--suite");
   verb.option("--scenes N", arguments->scenes, "With --score: test scenes of each arm", CLI::Range(1, 100000),
               with_default)
       ->needs(score);
   verb.option("--names SOURCE,...", arguments->names,
-              "With --score: no answers, but what is read from test scenes with the true Selections: simulator, read, "
-              "read_balanced, read_drawn, read_robust; looked: a model is shown each picture, and asked which of its "
+              "With --score: score the reading of test scenes instead, with the true Selections: simulator, read, "
+              "read_balanced, read_drawn, read_robust; looked: a model sees each picture and says which of its "
               "objects the command could mean (--answers openai or cassette:FILE)")
       ->needs(score);
-  verb.option("--segments SOURCE,...", arguments->segments, "Likewise, from segments of: simulator, difference")
+  verb.option("--segments SOURCE,...", arguments->segments,
+              "With --score: read from segments of: simulator, difference")
       ->needs(score);
-  verb.option("--arms ARM,...", arguments->arms, "With --names or --segments: in these arms only")->needs(score);
+  verb.option("--arms ARM,...", arguments->arms, "With --names or --segments: score only these arms")->needs(score);
   verb.option("--best-product FILE", arguments->best_product,
-              "With --suite: write answers instead, of each command the product of types and textures that keeps "
-              "what is meant in most training scenes (found by ascent, from the truth): a reference for --answers FILE")
+              "With --suite: write a reference for --answers FILE instead: for each command the product of types and "
+              "textures that keeps the meant objects in most training scenes (found by ascent, from the truth)")
       ->needs("--suite")
       ->excludes(score);
   verb.below("Who answers");
@@ -291,8 +293,9 @@ void add_select(CLI::App& app, int&) {
   verb.option("--max-queries N", arguments->max_queries, "The most questions to ask a server; -1: no limit",
               CLI::Range(-1, 1000000), with_default);
   verb->footer(
-      "openai asks the server at OPENAI_BASE_URL (any with OpenAI's API) with the key in OPENAI_API_KEY: one question "
-      "for each object type and texture. An interrupted command continues from the cassette.\nExample: lgabench select "
+      "With --answers openai, select asks the server at OPENAI_BASE_URL (any with OpenAI's API) one question for each "
+      "object type and texture; OPENAI_API_KEY holds the key. Run an interrupted command again, and it continues from "
+      "the cassette.\nExample: lgabench select "
       "red_heart\nA table of a model's answers: lgabench select --suite words --score\nWhat is read from pictures: "
       "lgabench select --suite pictures --score --names read,read_robust\nTo record for lgabench run "
       "--answers cassette:M.jsonl: lgabench select --suite q1 --answers openai "

@@ -140,7 +140,7 @@ void add_status(CLI::App& app, int& exit) {
   verb.option("--json", options->json, "Print JSON instead of a table");
   verb->footer(
       "Example: lgabench status runs/q1\nExit 0: all parts are complete or running. Exit 3: some must be run again; "
-      "the --array that it prints lists them.");
+      "status lists them as --array.");
   verb->callback([options, &exit] { exit = print_status(options->directories, options->json); });
 }
 

@@ -165,7 +165,7 @@ void add_study(CLI::App& app, int& exit) {
   const std::vector<std::string> actions{"new", "check", "serve", "rehearse", "report"};
   Verb verb(app, "study", "Run a user study in a browser, for the rows Human and LGA-HILL");
   verb.option("what new|check|serve|rehearse|report", a->what,
-              "new: write a protocol into DIR, to be filled in; check: say what is missing; serve: serve the "
+              "new: write a protocol into DIR, for you to fill in; check: say what is missing; serve: serve the "
               "pages of DIR's protocol; rehearse: let simulated people take part; report: show the results",
               required, one_of("action", actions));
   verb.option("path DIR", a->path, "The study's directory or its protocol; for report, the directory that serve wrote",
@@ -173,15 +173,15 @@ void add_study(CLI::App& app, int& exit) {
   verb.option("--out DIR", a->out, "serve, rehearse: where to store answers; a study already there is continued");
   verb.below("The protocol");
   verb.option("--protocol paper|crossover|disputed", a->protocol,
-              "new: the paper's study, one where nobody sees a command twice, or one that asks whether commands mean "
-              "the objects of disputed pairs",
+              "new: paper: the paper's study; crossover: nobody sees a command twice; disputed: people say whether "
+              "commands mean the objects of disputed pairs",
               one_of("protocol", {"paper", "crossover", "disputed"}), with_default);
   verb.option("--pin", a->pin,
-              "check: fix the protocol: write the hashes of what must no longer change into a file beside it");
+              "check: pin the protocol: write the hashes of what must not change into a file beside it");
   verb.below("The server");
   verb.option("--bind ADDRESS", a->bind, "serve: the address to listen on", with_default);
   verb.option("--port N", a->port, "serve: the port; 0: any free one", CLI::Range(0, 65535), with_default);
-  verb.option("--behind-tls-proxy", a->behind_tls_proxy, "serve: this server is behind a proxy that does TLS");
+  verb.option("--behind-tls-proxy", a->behind_tls_proxy, "serve: the server runs behind a proxy that does TLS");
   verb.option("--host NAME", a->host, "serve: the host name (and port) of that proxy");
   verb.option("--invitation CODE", a->invitation,
               "serve: letters and digits of your choice; only people who open the link that contains them can begin",

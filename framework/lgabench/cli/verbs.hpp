@@ -165,7 +165,7 @@ inline void add_scenario_path(Verb& verb) {
   const std::function<void(const std::vector<fs::path>&)> add = [](const std::vector<fs::path>& directories) {
     for (const fs::path& directory : directories) lgabench::add_scenario_path(directory);
   };
-  verb.option("--scenario-path DIR", add, "Also a directory of scenarios (.json files); can be repeated", repeatable);
+  verb.option("--scenario-path DIR", add, "Also look for scenarios (.json files) here; can be repeated", repeatable);
 }
 
 /// Parses, runs the verb's callback, turns typed errors into one line on stderr and an exit status.
