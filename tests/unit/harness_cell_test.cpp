@@ -10,6 +10,7 @@
 #include <lgabench/cell/demonstrations.hpp>
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cell/hdf5.hpp>
+#include <lgabench/cell/picture.hpp>
 #include <lgabench/cell/reference_actor.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
@@ -627,6 +628,19 @@ TEST(Constant, IsTheMedoidOfTheLabels) {
   // Summed distances: .4 1.85, -.1 .95, 0 .85, .05 .90, -.3 1.55
   EXPECT_EQ(method.learn(demonstrations, services)->act({}, {})[1], 0);
   EXPECT_THROW(method.learn({}, services), MethodError);
+}
+
+TEST(Pictures, LoseTheirFinestColoursWhereTheyAreTooLarge) {
+  Picture picture(64, 64);
+  picture.paste(0, 0, 64, 64, 1, [](int x, int y) {
+    const auto noise = static_cast<std::uint8_t>(17 * x * x + 29 * y * y + 7 * x * y);
+    return Rgb{noise, static_cast<std::uint8_t>(3 * noise), static_cast<std::uint8_t>(5 * noise)};
+  });
+  const std::size_t whole = picture.png().size();
+  EXPECT_EQ(picture.png(whole), picture.png());
+  const std::string smaller = picture.png(whole - 1);
+  EXPECT_LT(smaller.size(), whole);
+  EXPECT_GT(smaller.size(), picture.png(1).size()) << "no more is lost than need be";
 }
 
 }  // namespace

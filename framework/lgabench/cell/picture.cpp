@@ -66,4 +66,14 @@ std::string Picture::png() const {
   return bytes;
 }
 
+std::string Picture::png(std::size_t most_bytes) const {
+  std::string bytes = png();
+  for (int dropped = 1; bytes.size() > most_bytes && dropped <= 4; ++dropped) {
+    Picture coarse = *this;
+    for (std::uint8_t& value : coarse.rgb_) value = static_cast<std::uint8_t>(value >> dropped << dropped);
+    bytes = coarse.png();
+  }
+  return bytes;
+}
+
 }  // namespace lgabench

@@ -35,6 +35,8 @@ class Picture {
 
   /// @throws Error if libpng cannot write it.
   std::string png() const;
+  /// A PNG of at most `most_bytes`, where that needs no more than half of each colour's bits to be dropped.
+  std::string png(std::size_t most_bytes) const;
 
  private:
   int width_, height_;

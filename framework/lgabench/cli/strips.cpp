@@ -32,7 +32,7 @@ void draw_action(Picture& picture, const std::vector<Vec2>& places) {
 }
 
 // Left the scene, its targets outlined and the action drawn; right how it ended. @throws InputError without the engine.
-std::string strip(PlayedScenes& scenes, const PictureRequest& request) {
+std::string strip(PlayedScenes& scenes, const PictureRequest& request, std::size_t most_bytes) {
   const PlayedScenes::Played& played = scenes.cell(request.cell.string());
   const Scene scene = PlayedScenes::scene(played, request.arm, request.index, request.scene);
   const PictureRequest::End& end = request.ends.at(0);
@@ -58,7 +58,7 @@ std::string strip(PlayedScenes& scenes, const PictureRequest& request) {
   draw_action(picture, places);
   const Observation after = environment->step(end.action).observation;
   picture.paste(columns + between, 0, columns, rows, 1, [&](int x, int y) { return pixel_colour(after, pixel(x, y)); });
-  return picture.png();
+  return picture.png(most_bytes);
 }
 
 }  // namespace
@@ -71,11 +71,12 @@ void add_strips(CLI::App& app, int&) {
       "Example: echo '[{\"cell\": \"runs/x/cells/KEY/cell.json\", \"arm\": \"test\", \"index\": 0, \"scene\": "
       "\"HASH\",\n"
       "                \"selections\": [], \"ends\": [{\"engine\": \"mujoco\", \"action\": [...]}], \"out\": "
-      "\"a.png\"}]' | lgabench-worker strips");
+      "\"a.png\", \"most_bytes\": 18000}]' | lgabench-worker strips");
   verb->callback([] {
     PlayedScenes scenes;
     answer_requests("strips", [&](const JsonReader& request) -> Json {
-      write_file(request.at("out").string(), strip(scenes, read_picture_request(request)));
+      const auto most_bytes = static_cast<std::size_t>(request.at("most_bytes").integer(1, 1'000'000));
+      write_file(request.at("out").string(), strip(scenes, read_picture_request(request), most_bytes));
       return Json::object();
     });
   });

@@ -189,6 +189,7 @@ std::optional<std::vector<fs::path>> add_scenes(const fs::path& board, const Ent
                                               {},
                                               {{entry.identity.engine, episode->action}}}));
     requests.back()["out"] = (scratch.path / which).string();
+    requests.back()["most_bytes"] = most_picture_bytes;
   }
   const WorkerAnswers answers = ask_worker("strips", requests);
   for (const Json& line : answers.lines)
