@@ -46,6 +46,8 @@ class Asks(Selects):
 
 
 class Silent(Asks):
+    asks = "accept"
+
     def revise(self, command, selected, demonstrations, services):
         return selected
 """

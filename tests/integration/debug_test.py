@@ -91,7 +91,7 @@ class Debugging(Authors):
         if "ptrace" in said:
             self.skipTest("no process may be traced here")
         self.assertRegex(said, r"#\d+ .*fixture_throw.so|P::act")
-        self.assertIn("nothing is kept", said)
+        self.assertIn("no result is kept", said)
         said = self.debug(key, "run\nquit\n", "fixture_throw")
         self.assertIn("exited normally", said)
 

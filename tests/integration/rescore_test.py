@@ -109,7 +109,7 @@ class Rescore(case.BesideOneRun):
             self.assertIsNone(line["rescored"])
             self.assertIn(why, line["problem"])
             self.assertIn(f"left out: {key}/test/{index}: ", self.said.stderr)
-        self.assertIn("2 episodes are left out", self.said.stderr)
+        self.assertIn("2 episodes could not be judged again and are left out", self.said.stderr)
         self.assertTrue(all("problem" not in line for at, line in lines.items() if at not in ((key, "test", 1), (key, "test", 2))))
 
     def test_what_is_wrong_is_said_in_a_line(self):

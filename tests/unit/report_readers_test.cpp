@@ -161,7 +161,7 @@ TEST(Readers, TheHeadlineIsThePairedDifferenceInTheMainArm) {
   ASSERT_NE(begin, page.npos);
   const std::string line =
       std::regex_replace(page.substr(begin, page.find("</p>", begin) - begin), std::regex("<[^>]*>"), "");
-  EXPECT_SAYS(line, "1 demonstration, arm same place: LGA succeeds in 0.75 of the episodes: 0.50 [");
+  EXPECT_SAYS(line, "1 demonstration, arm &quot;same place&quot;: LGA succeeds in 0.75 of the episodes: 0.50 [");
   EXPECT_SAYS(line, "] more than GCBC-SEG, 0.15 [");
   EXPECT_SAYS(line, "] less than the random visible object (95 % intervals of the paired differences)");
 }
