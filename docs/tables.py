@@ -94,11 +94,11 @@ def section(suite):
     about, every = suite["about"], options(suite["options"])
     said = [f"Main arm `{about['main_arm']}`." if len(about["arms"]) > 1 else "", f"Rows: {code(suite['methods'])}" + (f"; all with {every}." if every else ".")]
     said.append("All methods learn from the same demonstrations." if same_demonstrations(suite) else
-                "Training targets come from what a method selects, for methods that select.")
+                "A method that selects features learns from targets of its own selection, others from the truth.")
     said.append(f"Reference rows besides the usual ones: {code(suite['references'])}." if "references" in suite else "")
     if "variants" in suite:
         said.append(f"Each scenario is played in {len(suite['variants'])} variants, "
-                    f"{listed([f'`{name}`' for name in suite['variants']])}; names of arms end in the variant's.")
+                    f"{listed([f'`{name}`' for name in suite['variants']])}; an arm's name ends in the name of its variant.")
     return [f"## `{suite['id']}`: {about['title']}", " ".join(filter(None, said)), "", *arms(suite)]
 
 

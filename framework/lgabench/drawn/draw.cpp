@@ -132,7 +132,7 @@ Json suite_of(const std::string& id, const DrawRequest& request, const std::vect
       "title": "Drawn commands",
       "question": "What does an abstraction understand of commands that nobody has seen?",
       "main_arm": "test", "main_demonstrations": 5,
-      "arms": {"test": "the target among others, one of which a careless reading would keep"}},
+      "arms": {"test": "the target among others, one of which a careless reader of the command would take"}},
     "environment": "tabletop", "scenarios": [], "groups": {}, "layouts": [], "engines": ["mujoco"],
     "methods": ["lga+meaning=named", "human", "gcbc_seg"], "references": ["most_shared", "never_demonstrated"],
     "demonstrations": [5], "seeds": [0, 1, 2], "episodes": 30, "scene_seed": 0,
