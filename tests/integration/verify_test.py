@@ -4,6 +4,7 @@ LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 v
 """
 import hashlib
 import json
+import pathlib
 import re
 import shutil
 import unittest
@@ -129,6 +130,9 @@ class Verify(BesideOneRun):
 
     def test_another_processor_is_named(self):
         run = json.loads((self.run_directory / "run.json").read_text())
+        flags = pathlib.Path("/proc/cpuinfo").read_text().split("flags", 1)[-1].split("\n")[0].split()
+        vectors = " with AVX-512" if "avx512f" in flags else " with AVX2" if {"avx2", "fma"} <= set(flags) else ""
+        self.assertTrue(run["machine"]["processor"].endswith(vectors), "last bits of training depend on them")
         run["machine"]["processor"] = "Z80"
         (self.run_directory / "run.json").write_text(json.dumps(run))
         said = self.verify("--sample", "1", expect=0).stdout

@@ -17,11 +17,21 @@
 namespace lgabench {
 namespace {
 
+// Virtual machines with different processors have one name: the instructions by which learning/kernels.cpp chooses tell
+// them apart.
+std::string vector_instructions() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f")) return " with AVX-512";
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return " with AVX2";
+#endif
+  return "";
+}
+
 std::string processor() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);)
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
-  return "unknown";
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2) + vector_instructions();
+  return "unknown" + vector_instructions();
 }
 
 Json machine() {

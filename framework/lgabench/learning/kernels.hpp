@@ -1,5 +1,7 @@
 // The arithmetic of a training step, compiled for several instruction sets; the processor's best is chosen at run time.
-// No kernel adds across the numbers of a vector, so every set with fused multiply-add gives the same bits.
+// No kernel adds across the numbers of a vector, so every set with fused multiply-add gives the same bits, but for two
+// exceptions: input_gradient() of a layer with 16 channels adds overlapping windows in another order, and Adam fuses
+// other products in the numbers that do not fill a vector. A run records which instructions its processor has.
 #pragma once
 #include <cstddef>
 #include <vector>
