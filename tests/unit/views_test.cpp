@@ -5,6 +5,7 @@
 
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/evaluator.hpp>
+#include <lgabench/cell/reference_actor.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <tabletop/two_poses.hpp>
@@ -52,7 +53,8 @@ std::map<int, Segment> segments(const Observation& seen) {
   for (int i = 0; i < static_cast<int>(seen.ids.size()); ++i)
     if (const int id = seen.ids[static_cast<std::size_t>(i)]) {
       Segment& one = all[id];
-      one.centre = one.centre + Vec2{i / seen.size.columns + 0., i % seen.size.columns + 0.};
+      const int row = i / seen.size.columns, column = i % seen.size.columns;
+      one.centre = one.centre + Vec2{1. * row, 1. * column};
       ++one.pixels;
     }
   for (auto& [id, one] : all) one.centre = 1. / one.pixels * one.centre;

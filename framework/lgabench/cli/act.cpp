@@ -9,6 +9,7 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/scratch.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/host/hosted_method.hpp>
 #include <lgabench/host/messages.hpp>
 #include <lgabench/host/python_method.hpp>

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include <lgabench/abstraction/goal_mask.hpp>
+#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/picture.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/gallery.hpp>
