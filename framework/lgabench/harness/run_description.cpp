@@ -10,6 +10,7 @@
 #include <set>
 #include <thread>
 
+#include <lgabench/core/processor.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/harness/cell_plugins.hpp>
 #include <lgabench/host/confine.hpp>
@@ -17,21 +18,13 @@
 namespace lgabench {
 namespace {
 
-// Virtual machines with different processors have one name: the instructions by which learning/kernels.cpp chooses tell
-// them apart.
-std::string vector_instructions() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f")) return " with AVX-512";
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return " with AVX2";
-#endif
-  return "";
-}
-
 std::string processor() {
+  // Processors of virtual machines share a name: the instructions by which kernels are chosen tell them apart.
+  const std::string instructions = has_avx512() ? " with AVX-512" : has_avx2() ? " with AVX2" : "";
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);)
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2) + vector_instructions();
-  return "unknown" + vector_instructions();
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2) + instructions;
+  return "unknown" + instructions;
 }
 
 Json machine() {
