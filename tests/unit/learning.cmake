@@ -1,6 +1,18 @@
 lgabench_unit_test(learning_test SHARDS 2 SOURCES learning_test.cpp centroid_policy_test.cpp heat_map_test.cpp stations_test.cpp noisy_copies_test.cpp shown_input_test.cpp
                    LINK lgabench_learning)
 target_compile_options(learning_test PRIVATE -O1)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  # GCC fuses products from -O2 on. Two rows in registers: 16 lanes are eight registers of AVX2.
+  foreach(lanes 4 8 16)
+    add_library(kernels_${lanes}_lanes OBJECT kernels_lanes.cpp)
+    lgabench_target(kernels_${lanes}_lanes)
+    target_include_directories(kernels_${lanes}_lanes PRIVATE ${PROJECT_SOURCE_DIR}/framework)
+    target_compile_definitions(kernels_${lanes}_lanes PRIVATE LGABENCH_LANES=${lanes} LGABENCH_TILE_ROWS=2)
+    target_compile_options(kernels_${lanes}_lanes PRIVATE -O2 -mavx2 -mfma -fno-math-errno -ffp-contract=fast -Wno-psabi)
+    target_sources(learning_test PRIVATE $<TARGET_OBJECTS:kernels_${lanes}_lanes>)
+  endforeach()
+  target_sources(learning_test PRIVATE kernels_test.cpp)
+endif()
 lgabench_unit_test(learning_allocations_test SOURCES learning_allocations_test.cpp LINK lgabench_learning)
 add_dependencies(learning_test lga lga_hill human lga_s lga_l gcbc_dart gcbc_seg factorial)
 if(LGABENCH_TORCH)

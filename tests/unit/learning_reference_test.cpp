@@ -7,8 +7,9 @@
 #include <numeric>
 
 #include <lgabench/core/json.hpp>
-#include <lgabench/core/random.hpp>
 #include <lgabench/learning/network.hpp>
+
+#include "random_samples.hpp"
 
 namespace lgabench {
 namespace {
@@ -96,47 +97,6 @@ struct Reference {
   }
 };
 
-// Of four masks one is random everywhere, two within a rectangle, and one is empty; colours are random everywhere, and
-// masks too before batch normalisation, which would enlarge the rounding of what is nearly the same everywhere.
-Samples random_samples(const NetworkShape& shape, int rows) {
-  RandomStream random("samples");
-  Samples s(shape.samples(), rows);
-  for (auto& picture : s.pictures)
-    for (float& value : picture) value = static_cast<float>(random.uniform());
-  for (std::size_t t = 0; t < shape.channels.size(); ++t)
-    for (int row = 0; row < rows && shape.channels[t] == 1 && shape.architecture == Architecture::plain; ++row) {
-      const int top = static_cast<int>(random.below(30)), left = static_cast<int>(random.below(60));
-      for (int pixel = 0; pixel < input_pixels && row % 4 != 0; ++pixel) {
-        const int y = pixel / input_columns - top, x = pixel % input_columns - left;
-        if (row % 4 == 3 || y < 0 || y > 8 || x < 0 || x > 11)
-          s.pictures[t][static_cast<std::size_t>(row * input_pixels + pixel)] = 0;
-      }
-    }
-  for (float& value : s.text) value = static_cast<float>(random.gaussian() / 20);
-  for (float& value : s.labels) value = static_cast<float>(random.uniform());
-  return s;
-}
-
-// As those, with every picture but for a rectangle like the first.
-Samples mostly_alike(const NetworkShape& shape, int rows) {
-  RandomStream random("alike");
-  Samples s = random_samples(shape, rows);
-  for (std::size_t t = 0; t < shape.channels.size(); ++t) {
-    const std::size_t numbers = s.pictures[t].size() / static_cast<std::size_t>(rows),
-                      channels = numbers / input_pixels;
-    for (int row = 1; row < rows; ++row) {
-      const int top = static_cast<int>(random.below(20)), left = static_cast<int>(random.below(50));
-      for (std::size_t i = 0; i < numbers; ++i) {
-        const int y = static_cast<int>(i / channels) / input_columns - top,
-                  x = static_cast<int>(i / channels) % input_columns - left;
-        if (y < 0 || y > 14 || x < 0 || x > 20)
-          s.pictures[t][static_cast<std::size_t>(row) * numbers + i] = s.pictures[t][i];
-      }
-    }
-  }
-  return s;
-}
-
 struct Case {
   const char* name;
   NetworkShape shape;
@@ -177,12 +137,6 @@ class Pair {
  private:
   torch::optim::Adam optimiser_;
 };
-
-std::vector<int> all_rows(const Samples& samples) {
-  std::vector<int> rows(static_cast<std::size_t>(samples.rows));
-  std::iota(rows.begin(), rows.end(), 0);
-  return rows;
-}
 
 class Networks : public testing::TestWithParam<std::tuple<Case, const Kernels*>> {};
 
@@ -287,27 +241,6 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& tested) {
       return std::string(std::get<0>(tested.param).name) + "_" + std::get<1>(tested.param)->name;
     });
-
-TEST(Kernels, WithFusedMultiplyAddGiveTheSameBits) {
-  for (const Architecture architecture : {plain, text, released})
-    for (const bool alike : {false, true}) {
-      const NetworkShape shape{{1, 3}, true, architecture};
-      const Samples samples = (alike ? mostly_alike : random_samples)(shape, 10);
-      std::vector<std::vector<float>> trained;
-      for (const Kernels* kernels : available_kernels()) {
-        if (kernels->name == std::string("portable")) continue;
-        Network network(shape, 3, Loss::norm, *kernels);
-        if (alike) network.begin(samples);
-        for (int step = 0; step < 5; ++step) {
-          network.backward(samples, all_rows(samples));
-          network.update(1e-3);
-        }
-        trained.push_back(network.parameters());
-      }
-      if (trained.size() < 2) GTEST_SKIP() << "this processor has one instruction set with fused multiply-add, or none";
-      EXPECT_EQ(trained[0], trained[1]);
-    }
-}
 
 // The formula of make_loss_curves.py.
 std::vector<float> numbers(std::uint64_t key, std::size_t count) {

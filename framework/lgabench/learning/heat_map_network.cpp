@@ -31,6 +31,17 @@ void softmax(std::vector<float>& values) {
   for (float& value : values) value = static_cast<float>(value / sum);
 }
 
+// The channels that are not 0, as runs.
+std::vector<Span> open_runs(const float* values, int channels) {
+  std::vector<Span> runs;
+  for (int c = 0; c < channels; ++c) {
+    if (!(values[c] > 0)) continue;
+    if (runs.empty() || runs.back().end < c) runs.push_back({c, c});
+    runs.back().end = c + 1;
+  }
+  return runs;
+}
+
 double log_of(float probability) { return std::log(std::max(double{probability}, 1e-30)); }
 
 }  // namespace
@@ -243,7 +254,10 @@ void HeatMapNetwork::backward() {
     if (i > 0) {
       Convolution& before = convolutions_[i - 1];
       std::fill_n(static_cast<float*>(before.gradients), before.layer.outputs(), 0.f);
-      kernels_.input_gradient(c.layer, c.gradients, c.transposed, before.gradients);
+      // Where the picture is empty, all outputs are alike: what ReLU closes there lets no gradient through.
+      const std::vector<Span> runs = open_runs(c.of_empty, features);
+      const OpenChannels open{c.seen.data(), runs.data(), static_cast<int>(runs.size())};
+      kernels_.input_gradient(c.layer, c.gradients, c.transposed, before.gradients, &open);
     } else if (embedding_) {
       float* const text = parameters_.gradient(text_);
       for (int e = 0; e < text_size; ++e)

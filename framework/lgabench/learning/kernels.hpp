@@ -1,7 +1,6 @@
 // The arithmetic of a training step, compiled for several instruction sets; the processor's best is chosen at run time.
-// No kernel adds across the numbers of a vector, so every set with fused multiply-add gives the same bits, but for two
-// exceptions: input_gradient() of a layer with 16 channels adds overlapping windows in another order, and Adam fuses
-// other products in the numbers that do not fill a vector. A run records which instructions its processor has.
+// No kernel adds across the numbers of a vector, and every width of vectors adds in the same order: so every set with
+// fused multiply-add gives the same bits. A processor without it gives others, and a run's record says that.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -18,6 +17,14 @@ struct AdamCoefficients {
   float root;          // 1 / sqrt(1 - beta2^t)
 };
 
+/// Where a gradient is known to be 0 in some channels: outside the columns `whole` of each row of `out`, only `runs` of
+/// channels may hold anything.
+struct OpenChannels {
+  const Span* whole;
+  const Span* runs;
+  int count;  // of runs
+};
+
 /// All arrays are the caller's; any alignment is right, 64 bytes is fast. A layer may be narrower than in `layers`,
 /// with 16 out channels at least; for input_gradient(), one row of its kernel is a multiple of 16 numbers.
 struct Kernels {
@@ -30,8 +37,10 @@ struct Kernels {
   /// `spans` is not null, over these columns of each row of the gradient alone.
   void (*weight_gradient)(const Layer& layer, const float* const* in, const float* gradient, float* weight_gradient,
                           int pictures, const Span* spans);
-  /// Adds d loss / d in of one picture; `transposed` weights are kernel x out_channels x (kernel x channels).
-  void (*input_gradient)(const Layer& layer, const float* gradient, const float* transposed, float* in_gradient);
+  /// Adds d loss / d in of one picture; `transposed` weights are kernel x out_channels x (kernel x channels). Where
+  /// `open` is not null, the channels that it leaves out are passed over: the same bits in less time.
+  void (*input_gradient)(const Layer& layer, const float* gradient, const float* transposed, float* in_gradient,
+                         const OpenChannels* open);
   /// Zeroes the gradient where `out` was cut off at 0.
   void (*relu_gradient)(const float* out, float* gradient, std::size_t count);
   /// Sums `rows` x `channels` numbers over rows; channels is at least 16.

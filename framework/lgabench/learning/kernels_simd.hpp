@@ -66,6 +66,19 @@ LGABENCH_INLINE inline void for_vectors(int count, const Use& use) {
   for (; first < count; first += lanes) use(Constant<1>(), first + lanes < count ? first : count - lanes);
 }
 
+// Likewise for the parts of a window, where windows that lie `step` numbers apart share places of the input: what they
+// share is added in the order of 16 lanes, which take blocks of 32 numbers, and window after window within a block.
+// Narrower vectors keep that order by taking a block's later part first.
+template <class Use>
+LGABENCH_INLINE inline void for_parts(int segment, int step, const Use& use) {
+  constexpr int of_16_lanes = most_vectors * 16;
+  const bool in_parts = most_vectors * lanes < of_16_lanes && step < of_16_lanes;
+  const int block = in_parts ? of_16_lanes : segment, part = in_parts ? step : segment;
+  for (int begin = 0; begin < segment; begin += block)
+    for (int first = (begin + block < segment ? begin + block : segment) - part; first >= begin; first -= part)
+      for_vectors(part, [&](auto vectors, int at) LGABENCH_INLINE { use(vectors, first + at); });
+}
+
 const float* row(const Layer& l, const float* in, int y) { return in + y * l.columns * l.channels; }
 int step_of(const Layer& l) { return l.stride * l.channels; }  // from a position's numbers to the next one's
 
@@ -118,25 +131,41 @@ void weight_gradient(const Layer& l, const float* const* in, const float* gradie
     });
 }
 
-void input_gradient(const Layer& l, const float* gradient, const float* transposed, float* in_gradient) {
+void input_gradient(const Layer& l, const float* gradient, const float* transposed, float* in_gradient,
+                    const OpenChannels* open) {
   const int width = l.out_columns(), segment = l.segment(), step = step_of(l);
-  for (int y = 0; y < l.out_rows(); ++y)
+  const Span every{0, l.out_channels};
+  struct Columns {
+    Span where;
+    const Span *first, *last;  // the channels to add
+  };
+  for (int y = 0; y < l.out_rows(); ++y) {
+    const Span whole = open ? open->whole[y] : Span{0, width};
+    const Span *const first = open ? open->runs : nullptr, *const last = open ? first + open->count : nullptr;
+    const Columns all[] = {
+        {{0, whole.begin}, first, last}, {whole, &every, &every + 1}, {{whole.end, width}, first, last}};
     for (int k = 0; k < l.kernel; ++k) {
       float* const to = in_gradient + (y * l.stride + k) * l.columns * l.channels;
-      for_vectors(segment, [&](auto vectors, int part) LGABENCH_INLINE {
-        for_tiles(width, [&](auto rows, int first) LGABENCH_INLINE {
-          constexpr int n = decltype(rows)::value, m = decltype(vectors)::value;
-          Vector sum[n][m] = {};
-          multiply_add<n, m>(sum, gradient + (y * width + first) * l.out_channels, l.out_channels, 1,
-                             transposed + k * l.out_channels * segment + part, segment, l.out_channels);
-          for (int r = 0; r < n; ++r)
-            for (int v = 0; v < m; ++v) {
-              float* const at = to + (first + r) * step + part + v * lanes;
-              store(at, load(at) + sum[r][v]);
-            }
-        });
+      for_parts(segment, step, [&](auto vectors, int part) LGABENCH_INLINE {
+        const float* const right = transposed + k * l.out_channels * segment + part;
+        for (const Columns& columns : all)
+          for_tiles(columns.where.end - columns.where.begin, [&](auto rows, int tile) LGABENCH_INLINE {
+            constexpr int n = decltype(rows)::value, m = decltype(vectors)::value;
+            const int column = columns.where.begin + tile;
+            const float* const left = gradient + (y * width + column) * l.out_channels;
+            Vector sum[n][m] = {};
+            for (const Span* run = columns.first; run != columns.last; ++run)
+              multiply_add<n, m>(sum, left + run->begin, l.out_channels, 1, right + run->begin * segment, segment,
+                                 run->end - run->begin);
+            for (int r = 0; r < n; ++r)
+              for (int v = 0; v < m; ++v) {
+                float* const at = to + (column + r) * step + part + v * lanes;
+                store(at, load(at) + sum[r][v]);
+              }
+          });
       });
     }
+  }
 }
 
 void relu_gradient(const float* __restrict out, float* __restrict gradient, std::size_t count) {
@@ -254,14 +283,23 @@ void norm_gradient(const float* values, const float* mean, const float* inverse,
                                                            scale_gradient, shift_gradient);
 }
 
+// a * b + c, rounded once where the processor can: written out, since a compiler may choose another product to fuse.
+LGABENCH_INLINE inline float fused(float a, float b, float c) {
+#ifdef __FP_FAST_FMAF
+  return __builtin_fmaf(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
+
 void adam(const AdamCoefficients& c, const float* __restrict gradients, float* __restrict mean,
           float* __restrict variance, float* __restrict parameters, std::size_t count) {
   const auto [b1, b2, epsilon, c1, c2, rate, root] = c;
   for (std::size_t i = 0; i < count; ++i) {
     const float g = gradients[i];
-    mean[i] = b1 * mean[i] + c1 * g;
-    variance[i] = b2 * variance[i] + c2 * g * g;
-    parameters[i] -= rate * mean[i] / (__builtin_sqrtf(variance[i]) * root + epsilon);
+    mean[i] = fused(b1, mean[i], c1 * g);
+    variance[i] = fused(b2, variance[i], c2 * g * g);
+    parameters[i] -= rate * mean[i] / fused(__builtin_sqrtf(variance[i]), root, epsilon);
   }
 }
 

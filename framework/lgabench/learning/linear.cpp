@@ -46,7 +46,7 @@ void Linear::backward(const float* in, const float* gradient, float* in_gradient
   if (!in_gradient) return;
   transpose_weights(layer_, parameters_[weights_], transposed_);
   std::fill_n(in_gradient, rows * layer_.channels, 0.f);
-  kernels_.input_gradient(on(rows), gradient, transposed_, in_gradient);
+  kernels_.input_gradient(on(rows), gradient, transposed_, in_gradient, nullptr);
 }
 
 }  // namespace lgabench

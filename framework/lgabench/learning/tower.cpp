@@ -105,7 +105,7 @@ void Tower::backward(std::size_t i, const std::vector<const float*>& pictures) {
     float* const in = convolutions_[i - 1].gradients;
     std::fill_n(in, rows_ * l.inputs(), 0.f);
     for (int row = 0; row < rows_; ++row)
-      kernels_.input_gradient(l, c.gradients + row * l.outputs(), transposed_, in + row * l.inputs());
+      kernels_.input_gradient(l, c.gradients + row * l.outputs(), transposed_, in + row * l.inputs(), nullptr);
   }
   float* const weight_gradient = parameters_.gradient(c.weights);
   if (i == 0 && mostly_usual_) {
