@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numeric>
 
@@ -29,17 +30,6 @@ void softmax(std::vector<float>& values) {
     sum += value;
   }
   for (float& value : values) value = static_cast<float>(value / sum);
-}
-
-// The channels that are not 0, as runs.
-std::vector<Span> open_runs(const float* values, int channels) {
-  std::vector<Span> runs;
-  for (int c = 0; c < channels; ++c) {
-    if (!(values[c] > 0)) continue;
-    if (runs.empty() || runs.back().end < c) runs.push_back({c, c});
-    runs.back().end = c + 1;
-  }
-  return runs;
 }
 
 double log_of(float probability) { return std::log(std::max(double{probability}, 1e-30)); }
@@ -144,9 +134,10 @@ void HeatMapNetwork::convolve(std::size_t i) {
                    c.of_empty, true, nullptr);
   kernels_.forward(l, input(i), parameters_[c.weights], bias, c.outputs, true, c.seen.data());
   float* to = c.outputs;
+  const float* const empty = c.of_empty;
   const auto fill = [&](int count) {
     for (int column = 0; column < count; ++column, to += features)
-      std::copy_n(static_cast<const float*>(c.of_empty), features, to);
+      std::memcpy(to, empty, features * sizeof(float));  // a constant size, which a compiler makes two instructions of
   };
   for (const auto [begin, end] : c.seen) {
     fill(begin);
@@ -193,8 +184,10 @@ double HeatMapNetwork::teach(const std::vector<float>& wanted, Vec2 taken_m, std
   double loss = 0;
   Convolution& last = convolutions_.back();
   const float* feature = last.outputs;
-  const float* const heat = parameters_[heat_];
-  float *const of_weights = parameters_.gradient(heat_), *gradient = last.gradients;
+  float *const of_heats = parameters_.gradient(heat_), *gradient = last.gradients;
+  float heat[features], of_weights[features];  // where nothing else can point to, so that the loops are vectors
+  std::copy_n(parameters_[heat_], features, heat);
+  std::copy_n(of_heats, features, of_weights);
   for (std::size_t cell = 0; cell < map_.size(); ++cell, feature += features, gradient += features) {
     if (wanted[cell] > 0) loss -= wanted[cell] * log_of(map_[cell]);
     double away = map_[cell] - wanted[cell];
@@ -203,11 +196,10 @@ double HeatMapNetwork::teach(const std::vector<float>& wanted, Vec2 taken_m, std
       away += penalty * (map_[cell] - like[cell]);
     }
     const auto of_heat = static_cast<float>(weight * away);
-    for (int k = 0; k < features; ++k) {
-      of_weights[k] += of_heat * feature[k];
-      gradient[k] = of_heat * heat[k];
-    }
+    for (int k = 0; k < features; ++k) of_weights[k] += of_heat * feature[k];
+    for (int k = 0; k < features; ++k) gradient[k] = of_heat * heat[k];
   }
+  std::copy_n(of_weights, features, of_heats);
   if (groups_.size() > 1) loss += teach_groups(taken_m, group, weight);
   backward();
   return loss;
@@ -255,8 +247,10 @@ void HeatMapNetwork::backward() {
       Convolution& before = convolutions_[i - 1];
       std::fill_n(static_cast<float*>(before.gradients), before.layer.outputs(), 0.f);
       // Where the picture is empty, all outputs are alike: what ReLU closes there lets no gradient through.
-      const std::vector<Span> runs = open_runs(c.of_empty, features);
-      const OpenChannels open{c.seen.data(), runs.data(), static_cast<int>(runs.size())};
+      int channels[features], count = 0;
+      for (int k = 0; k < features; ++k)
+        if (c.of_empty[k] > 0) channels[count++] = k;
+      const OpenChannels open{c.seen.data(), channels, count};
       kernels_.input_gradient(c.layer, c.gradients, c.transposed, before.gradients, &open);
     } else if (embedding_) {
       float* const text = parameters_.gradient(text_);

@@ -1,5 +1,8 @@
 #include <lgabench/learning/kernels.hpp>
 
+#include <iterator>
+#include <numeric>
+
 #include <lgabench/core/processor.hpp>
 
 namespace lgabench {
@@ -8,6 +11,12 @@ extern const Kernels portable_kernels;
 #if defined(LGABENCH_X86)
 extern const Kernels avx2_kernels, avx512_kernels;
 #endif
+
+const int* const every_channel = [] {
+  static int all[padded_wide];
+  std::iota(std::begin(all), std::end(all), 0);
+  return all;
+}();
 
 const std::vector<const Kernels*>& available_kernels() {
   static const std::vector<const Kernels*> found = [] {

@@ -17,13 +17,15 @@ struct AdamCoefficients {
   float root;          // 1 / sqrt(1 - beta2^t)
 };
 
-/// Where a gradient is known to be 0 in some channels: outside the columns `whole` of each row of `out`, only `runs` of
-/// channels may hold anything.
+/// Where a gradient is known to be 0 in some channels: outside the columns `whole` of each row of `out`, only these
+/// channels, in ascending order, may hold anything.
 struct OpenChannels {
   const Span* whole;
-  const Span* runs;
-  int count;  // of runs
+  const int* channels;
+  int count;
 };
+/// 0, 1, 2 ...: all channels that a layer may have.
+extern const int* const every_channel;
 
 /// All arrays are the caller's; any alignment is right, 64 bytes is fast. A layer may be narrower than in `layers`,
 /// with 16 out channels at least; for input_gradient(), one row of its kernel is a multiple of 16 numbers.

@@ -19,18 +19,20 @@ typedef float Anywhere __attribute__((vector_size(lanes * sizeof(float)), aligne
 inline Vector load(const float* from) { return *reinterpret_cast<const Anywhere*>(from); }
 inline void store(float* to, Vector value) { *reinterpret_cast<Anywhere*>(to) = value; }
 
-// sum[r][v] += a[r * row_stride + k * step_stride] * b[k * b_stride + v * lanes ..], over k.
-template <int Rows, int Vectors>
+// sum[r][v] += a[r * row_stride + k * step_stride] * b[k * b_stride + v * lanes ..], over k = at(0), at(1) ...
+template <int Rows, int Vectors, class At>
 LGABENCH_INLINE inline void multiply_add(Vector (&sum)[Rows][Vectors], const float* a, std::ptrdiff_t row_stride,
-                                         std::ptrdiff_t step_stride, const float* b, std::ptrdiff_t b_stride,
-                                         int steps) {
-  for (int k = 0; k < steps; ++k, a += step_stride, b += b_stride) {
+                                         std::ptrdiff_t step_stride, const float* b, std::ptrdiff_t b_stride, int steps,
+                                         const At& at) {
+  for (int step = 0; step < steps; ++step) {
+    const std::ptrdiff_t k = at(step);
     Vector right[Vectors];
-    for (int v = 0; v < Vectors; ++v) right[v] = load(b + v * lanes);
+    for (int v = 0; v < Vectors; ++v) right[v] = load(b + k * b_stride + v * lanes);
     for (int r = 0; r < Rows; ++r)
-      for (int v = 0; v < Vectors; ++v) sum[r][v] += a[r * row_stride] * right[v];
+      for (int v = 0; v < Vectors; ++v) sum[r][v] += a[r * row_stride + k * step_stride] * right[v];
   }
 }
+constexpr auto each = [](int step) LGABENCH_INLINE { return std::ptrdiff_t{step}; };
 
 // A number as a type, so that a lambda may use it as a constant.
 template <int N>
@@ -50,10 +52,11 @@ LGABENCH_INLINE inline void with_rows(int rows, int first, const Use& use) {
 }
 template <class Use>
 LGABENCH_INLINE inline void for_tiles(int count, const Use& use) {
-  const int tiles = (count + most_rows - 1) / most_rows;
-  for (int t = 0; t < tiles; ++t) {
-    const int first = count * t / tiles;
-    with_rows(count * (t + 1) / tiles - first, first, use);
+  const int tiles = (count + most_rows - 1) / most_rows, least = tiles > 0 ? count / tiles : 0;
+  for (int t = 0, first = 0, larger = count - least * tiles; t < tiles; ++t) {
+    const int rows = least + (t < larger ? 1 : 0);
+    with_rows(rows, first, use);
+    first += rows;
   }
 }
 
@@ -96,7 +99,7 @@ void forward(const Layer& l, const float* in, const float* weights, const float*
           for (int v = 0; v < m; ++v) sum[r][v] = load(bias + channel + v * lanes);
         for (int k = 0; k < l.kernel; ++k)
           multiply_add<n, m>(sum, row(l, in, y * l.stride + k) + first * step, step, 1,
-                             weights + k * segment * l.out_channels + channel, l.out_channels, segment);
+                             weights + k * segment * l.out_channels + channel, l.out_channels, segment, each);
         for (int r = 0; r < n; ++r)
           for (int v = 0; v < m; ++v) {
             const Vector zero = {};
@@ -122,7 +125,7 @@ void weight_gradient(const Layer& l, const float* const* in, const float* gradie
           for (int y = 0; y < l.out_rows(); ++y, right += width * l.out_channels) {
             const Span span = spans ? spans[y] : Span{0, width};
             multiply_add<n, m>(sum, row(l, in[picture], y * l.stride + k) + first + span.begin * step, 1, step,
-                               right + span.begin * l.out_channels, l.out_channels, span.end - span.begin);
+                               right + span.begin * l.out_channels, l.out_channels, span.end - span.begin, each);
           }
         for (int r = 0; r < n; ++r)
           for (int v = 0; v < m; ++v)
@@ -131,41 +134,48 @@ void weight_gradient(const Layer& l, const float* const* in, const float* gradie
     });
 }
 
-void input_gradient(const Layer& l, const float* gradient, const float* transposed, float* in_gradient,
-                    const OpenChannels* open) {
-  const int width = l.out_columns(), segment = l.segment(), step = step_of(l);
-  const Span every{0, l.out_channels};
+// For layers of so many out channels, or of any with 0: a constant saves the addresses.
+template <int Channels>
+void input_gradient_of(const Layer& l, const float* gradient, const float* transposed, float* in_gradient,
+                       const OpenChannels* open) {
+  const int width = l.out_columns(), segment = l.segment(), step = step_of(l),
+            out_channels = Channels > 0 ? Channels : l.out_channels;
   struct Columns {
     Span where;
-    const Span *first, *last;  // the channels to add
+    const int* channels;  // to add
+    int count;
   };
   for (int y = 0; y < l.out_rows(); ++y) {
     const Span whole = open ? open->whole[y] : Span{0, width};
-    const Span *const first = open ? open->runs : nullptr, *const last = open ? first + open->count : nullptr;
-    const Columns all[] = {
-        {{0, whole.begin}, first, last}, {whole, &every, &every + 1}, {{whole.end, width}, first, last}};
+    const int *const channels = open ? open->channels : nullptr, count = open ? open->count : 0;
+    const Columns all[] = {{{0, whole.begin}, channels, count},
+                           {whole, every_channel, out_channels},
+                           {{whole.end, width}, channels, count}};
     for (int k = 0; k < l.kernel; ++k) {
       float* const to = in_gradient + (y * l.stride + k) * l.columns * l.channels;
       for_parts(segment, step, [&](auto vectors, int part) LGABENCH_INLINE {
-        const float* const right = transposed + k * l.out_channels * segment + part;
         for (const Columns& columns : all)
           for_tiles(columns.where.end - columns.where.begin, [&](auto rows, int tile) LGABENCH_INLINE {
             constexpr int n = decltype(rows)::value, m = decltype(vectors)::value;
-            const int column = columns.where.begin + tile;
-            const float* const left = gradient + (y * width + column) * l.out_channels;
+            const int first = columns.where.begin + tile;
             Vector sum[n][m] = {};
-            for (const Span* run = columns.first; run != columns.last; ++run)
-              multiply_add<n, m>(sum, left + run->begin, l.out_channels, 1, right + run->begin * segment, segment,
-                                 run->end - run->begin);
+            multiply_add<n, m>(sum, gradient + (y * width + first) * out_channels, out_channels, 1,
+                               transposed + k * out_channels * segment + part, segment, columns.count,
+                               [&](int i) LGABENCH_INLINE { return std::ptrdiff_t{columns.channels[i]}; });
             for (int r = 0; r < n; ++r)
               for (int v = 0; v < m; ++v) {
-                float* const at = to + (column + r) * step + part + v * lanes;
+                float* const at = to + (first + r) * step + part + v * lanes;
                 store(at, load(at) + sum[r][v]);
               }
           });
       });
     }
   }
+}
+
+void input_gradient(const Layer& l, const float* gradient, const float* transposed, float* in_gradient,
+                    const OpenChannels* open) {
+  (l.out_channels == 16 ? input_gradient_of<16> : input_gradient_of<0>)(l, gradient, transposed, in_gradient, open);
 }
 
 void relu_gradient(const float* __restrict out, float* __restrict gradient, std::size_t count) {
