@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <map>
 #include <utility>
 
+#include <lgabench/core/shipped.hpp>
 #include <lgabench/drawn/persons.hpp>
 #include <tabletop/raster.hpp>
 
@@ -15,14 +15,20 @@ struct Persons {
     const drawn::PersonGrammar::Words* words;
     drawn::PersonRule rule;
   };
-  drawn::PersonGrammar grammar;
-  std::map<const drawn::PersonGrammar::Words*, std::vector<drawn::PersonRule>> rules;
+  const drawn::PersonGrammar& grammar;
   std::vector<One> all;
 };
 
 namespace {
 
 using drawn::Thing;
+
+// Of words of a grammar, which lives as long as the process.
+const std::vector<drawn::PersonRule>& rules_of(const drawn::PersonGrammar& grammar,
+                                               const drawn::PersonGrammar::Words* words) {
+  static MadeOnce<std::vector<drawn::PersonRule>, const drawn::PersonGrammar::Words*> all;
+  return all.of(words, [&] { return drawn::rules_of(grammar, words->types); });
+}
 
 // Objects with the looks of things, where they were placed last.
 class Table {
@@ -92,8 +98,7 @@ class Table {
 }  // namespace
 
 std::shared_ptr<const Persons> read_persons(const Scenario& scenario, const JsonReader& file) {
-  auto persons = std::make_shared<Persons>();
-  persons->grammar = drawn::person_grammar(scenario.space);
+  const auto persons = std::make_shared<Persons>(Persons{drawn::person_grammar(scenario.space), {}});
   const std::vector<JsonReader> commands = file.at("commands").elements();
   for (std::size_t i = 0; i < commands.size(); ++i) {
     const ScenarioCommand& command = scenario.commands[i];
@@ -101,8 +106,7 @@ std::shared_ptr<const Persons> read_persons(const Scenario& scenario, const Json
     if (!words)
       commands[i].at("utterance").fail("words of the grammar of persons, followed by nothing or by one of its hints");
     if (command.truth.target.empty()) commands[i].at("truth").fail("a rule that fits an object");
-    auto& rules = persons->rules[words];
-    if (rules.empty()) rules = drawn::rules_of(persons->grammar, words->types);
+    const std::vector<drawn::PersonRule>& rules = rules_of(persons->grammar, words);
     const auto meant = drawn::rule_of(command.truth.target, scenario.space);
     const auto rule = std::find_if(rules.begin(), rules.end(),
                                    [&meant](const auto& one) { return meant && drawn::same(one, *meant); });
@@ -134,7 +138,8 @@ std::vector<SceneObject> rival_objects(const Scenario& scenario, const Task& tas
       if (taken == drawn::taken_by(rule, scene->things, table.goal())) return table.objects(scene->taken);
       continue;
     }
-    const auto scene = drawn::draw_rivals(content.persons->rules.at(words), &rule, table.goal(), random, places, tries);
+    const auto scene =
+        drawn::draw_rivals(rules_of(content.persons->grammar, words), &rule, table.goal(), random, places, tries);
     if (!scene) break;
     const drawn::Standing seen = table.seen();
     bool plain = true;

@@ -3,6 +3,7 @@
 LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 answers_test.py Cassettes
 """
 import contextlib
+import datetime
 import hashlib
 import http.server
 import json
@@ -34,6 +35,7 @@ class Server(http.server.ThreadingHTTPServer):
         super().__init__(("127.0.0.1", 0), Handler)
         self.yes, self.asked, self.seconds, self.out_of_order = yes, [], 0, False
         self.bodies = []
+        self.served = []  # what it calls its model, in a reply after another; the last from then on
         self.odd = {}  # candidate -> what is not as usual in its reply: "seconds", or members of the choice
         self.refuses_temperature = False
         self.under_way, self.most_at_once, self.counting = 0, 0, threading.Lock()
@@ -72,12 +74,18 @@ class Handler(http.server.BaseHTTPRequestHandler):
         if self.server.out_of_order:
             return "out of order"
         time.sleep(self.server.seconds)
-        candidate = re.search(r'have the object (?:type|color) "([^"]*)"\?', question)[1]
+        about = re.search(r'have the object (?:type|color) "([^"]*)"\?', question)
+        candidate = about[1] if about else "what it means"
         text = "Final answer: " + ("yes" if candidate in self.server.yes else "no")
+        if not about:
+            text = 'Final answer: {"sets": [{"object_types": ["heart"], "textures": "ALL"}]}'
         odd = dict(self.server.odd.get(candidate, {}))
         time.sleep(odd.pop("seconds", 0))
+        served = {}
+        if names := self.server.served:
+            served = {"model": names.pop(0) if len(names) > 1 else names[0]}
         return json.dumps({"choices": [{"message": {"content": text}, "finish_reason": "stop", **odd}],
-                           "usage": {"total_tokens": 9}}).encode()
+                           "usage": {"total_tokens": 9, "prompt_tokens": 6, "completion_tokens": 3}, **served}).encode()
 
     def log_message(self, *_):
         pass
@@ -212,6 +220,41 @@ class Cassettes(Asking):
         self.call("run", self.suite, *RUN[2:], "--methods", "lga,lga_s,lga_l", "--set", "*.epochs=2", "--answers",
                   "cassette:tape.jsonl", "--out", "own", "--no-reference")
         self.assertEqual(sorted({cell["method"]["id"] for cell, _ in self.cells("own").values()}), ["lga", "lga_l", "lga_s"])
+
+    def test_who_answered_is_kept_and_another_model_stops_the_command(self):
+        self.server.served = ["m-2026-01-10"] * 56 + ["m-2026-09-30"]
+        one = ["--concurrency", "1"]
+        said = self.ask(*one, expect=3).stderr
+        self.assertRegex(said, r'made-up-1, asked about "[^"]+": the server now names its model "m-2026-09-30", the replies in tape.jsonl '
+                               r'are of "m-2026-01-10"; give another --cassette, or --any-served')
+        self.assertEqual(len(self.server.asked), 57)
+        lines = [json.loads(line) for line in (self.dir / "tape.jsonl").read_text().splitlines()]
+        self.assertEqual({(line["served"], line["tokens"], line["prompt_tokens"], line["reply_tokens"]) for line in lines},
+                         {("m-2026-01-10", 9, 6, 3)})
+        today = datetime.datetime.now(datetime.timezone.utc).date()
+        self.assertLessEqual({line["day"] for line in lines}, {str(today), str(today - datetime.timedelta(days=1))})
+        for line in lines:
+            self.assert_as_schema("cassette", line)
+        self.ask(*one, expect=3)
+        self.assertIn("made-up-1 (served: m-2026-01-10, m-2026-09-30) (live)", self.ask(*one, "--any-served").stdout)
+        both = "made-up-1 (served: m-2026-01-10, m-2026-09-30)"
+        self.assertIn(f"answers of {both}; ", self.call("select", "--suite", self.suite, "--score", "--scenes", "1", "--answers",
+                                                        "cassette:tape.jsonl").stdout)
+        self.call("run", self.suite, *RUN, "--out", "out", "--answers", "cassette:tape.jsonl")
+        sources = {one["source"] for some in selections(self.dir / "out").values() for one in some}
+        self.assertEqual(sources, {both, "made-up-1 (served: m-2026-09-30)"})
+        self.assertIn(both, (self.dir / "out/report.md").read_text())
+        self.assertIn("--any-served: expected --answers openai", self.call("run", self.suite, "--any-served", expect=2).stderr)
+
+    def test_a_score_that_is_asked_for_says_how_far_it_is(self):
+        self.server.seconds = .1  # more than five seconds in all
+        self.environment.update(OPENAI_BASE_URL=f"http://127.0.0.1:{self.server.server_port}/v1")
+        said = self.call("select", "--suite", self.suite, "--score", "--scenes", "1", "--answers", "openai", "--model", "made-up-1", "--cassette",
+                         "slow.jsonl", "--concurrency", "2").stderr
+        self.assertRegex(said, r"(?m)^asked \d+$")
+        self.assertNotIn("of 0", said)
+        self.assertNotIn("about -", said)
+        self.assertRegex(said, r"(?m)^commands scored: \d of 6, about \d+ s left$")
 
     def test_what_is_no_cassette_of_one_model_is_refused(self):
         run = ["run", self.suite, *RUN, "--out", "out", "--answers"]

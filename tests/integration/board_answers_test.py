@@ -145,6 +145,7 @@ class AnswersAlone(Board):
         self.addCleanup(server.server_close)
         self.addCleanup(server.shutdown)
         self.environment.update(OPENAI_BASE_URL=f"http://127.0.0.1:{server.server_port}/v1", OPENAI_API_KEY=SECRET)
+        server.served = ["made-up-3-of-may"]
         self.call("select", "--suite", "tiny", "--answers", "openai", "--model", "made-up-3", "--cassette", "tape.jsonl")
         asked = len(server.asked)
         self.call("run", "tiny", "--preset", "abstraction", "--methods", "selected_by:lga", "--answers", "cassette:tape.jsonl",
@@ -152,7 +153,7 @@ class AnswersAlone(Board):
         place = self.dir / "board" / self.leaderboard("add", "run/tape", "--entry", "made_up_entry.json").stdout.split()[1]
         score = json.loads((place / "entry.json").read_text())["score"]
         self.assertEqual((score["asked"], score["questions"], score["tokens"]), ("flat", 224, 9 * 224))
-        self.assertIn("made-up-3", score["models"][0])
+        self.assertEqual(score["models"], ["made-up-3 (served: made-up-3-of-may)"])
         self.assertIn("letter T", score["wrong"]["letter"]["missed"])
         self.assertIn("agrees", self.leaderboard("verify", "--by", "B. Reader").stdout)
         fresh = subprocess.run(command_line("leaderboard", "verify", "--fresh", "--by", "B. Reader", "--board", "board"),

@@ -12,111 +12,10 @@
 #include <set>
 #include <thread>
 
-#include <lgabench/abstraction/final_answer.hpp>
-#include <lgabench/abstraction/openai_client.hpp>
-#include <lgabench/abstraction/select_features.hpp>
-
-#include "testing.hpp"
+#include "chat_server.hpp"
 
 namespace lgabench {
 namespace {
-
-constexpr const char* key = "sk-secret-1234567890";
-
-const FeatureSpace space{"small", {"heart", "star", "pan"}, {"red", "blue"}};
-const Command command{"Bring me the red heart.", "pick_and_place"};
-
-std::string completion(const std::string& text, const std::string& reason = "stop") {
-  return Json{{"choices", {{{"message", {{"role", "assistant"}, {"content", text}}}, {"finish_reason", reason}}}},
-              {"usage", {{"total_tokens", 7}}}}
-      .dump();
-}
-
-// Answers yes where the question is about a heart or red, no otherwise, unless `misbehave` answers first.
-class Server {
- public:
-  using Handler = std::function<bool(int request, const httplib::Request&, httplib::Response&)>;
-
-  explicit Server(Handler misbehave = {}) : misbehave_(std::move(misbehave)) {
-    server_.Post("/v1/chat/completions", [this](const httplib::Request& request, httplib::Response& response) {
-      const int number = ++requests;
-      under_way(+1);
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      {
-        const std::lock_guard lock(mutex_);
-        authorizations.insert(request.get_header_value("Authorization"));
-        bodies.push_back(request.body);
-      }
-      if (!misbehave_ || !misbehave_(number, request, response)) {
-        const bool yes = request.body.find("\\\"heart\\\"?") != std::string::npos ||
-                         request.body.find("\\\"red\\\"?") != std::string::npos;
-        response.set_content(completion(std::string("It depends.\n\n**Final answer:** ") + (yes ? "Yes." : "no")),
-                             "application/json");
-      }
-      under_way(-1);
-    });
-    server_.new_task_queue = [] { return new httplib::ThreadPool(16); };
-    port_ = server_.bind_to_any_port("127.0.0.1");
-    thread_ = std::thread([this] { server_.listen_after_bind(); });
-  }
-  ~Server() {
-    server_.stop();
-    thread_.join();
-  }
-
-  OpenAiOptions options() const {
-    OpenAiOptions options;
-    options.base_url = "http://127.0.0.1:" + std::to_string(port_) + "/v1";
-    options.api_key = key;
-    options.first_wait_s = .01;
-    options.timeout_s = 4;
-    return options;
-  }
-
-  std::atomic<int> requests{0}, most_at_once{0};
-  std::set<std::string> authorizations;
-  std::vector<std::string> bodies;
-
- private:
-  void under_way(int change) {
-    const int now = at_once_ += change;
-    for (int most = most_at_once; now > most && !most_at_once.compare_exchange_weak(most, now);) {
-    }
-  }
-
-  httplib::Server server_;
-  Handler misbehave_;
-  std::mutex mutex_;
-  std::atomic<int> at_once_{0};
-  int port_ = 0;
-  std::thread thread_;
-};
-
-class Chat : public testing::Test, public TemporaryDirectory {
- protected:
-  fs::path tape() const { return path / "tape.jsonl"; }
-
-  Selection ask(const OpenAiOptions* server, ChatOptions options = {"m"}) {
-    options.model = "m";
-    Cassette cassette(tape());
-    std::unique_ptr<OpenAiClient> client;
-    if (server) client = std::make_unique<OpenAiClient>(*server);
-    ChatLanguageModel model(cassette, client.get(), options);
-    return select_features(command, space, model);
-  }
-  // What asking this server ends with.
-  std::string failure(const Server& server, int attempts = 2) {
-    OpenAiOptions options = server.options();
-    options.attempts = attempts;
-    const std::string said = message_of<MethodError>([&] { ask(&options); });
-    EXPECT_EQ(said.find(key), std::string::npos) << said;
-    return said;
-  }
-  void expect_red_hearts(const Selection& selection) {
-    EXPECT_EQ(selection.target, (FeatureSet{{"heart"}, {"red"}}));
-    EXPECT_EQ(selection.source, "m");
-  }
-};
 
 TEST_F(Chat, AsksOneQuestionACandidateAndReplaysThemWithoutAServer) {
   Server server;
@@ -301,7 +200,7 @@ TEST_F(Chat, AReplyWithoutAnAnswerStopsNoOtherQuestion) {
     if (request.body.find("\\\"star\\\"?") != std::string::npos)
       response.set_content(completion("It is", "length"), "application/json");
     else if (request.body.find("\\\"blue\\\"?") != std::string::npos)
-      response.set_content("<html>", "text/html");
+      response.set_content("blue", "text/plain");
     else
       return false;
     return true;
@@ -317,7 +216,8 @@ TEST_F(Chat, AReplyWithoutAnAnswerStopsNoOtherQuestion) {
       ASSERT_EQ(e.questions.size(), 2u);
       EXPECT_EQ(e.questions[0],
                 "\"Bring me the red heart.\", asked about \"star\": the reply was cut off: finish_reason is length");
-      EXPECT_SAYS(e.questions[1], "asked about \"blue\": language model's reply: ");
+      EXPECT_SAYS(e.questions[1],
+                  "asked about \"blue\": language model's reply: byte 1: expected valid JSON, got \"blue\"");
     }
     EXPECT_EQ(server.requests, requests) << "each once, and what was answered not again";
   }
@@ -387,7 +287,7 @@ TEST_F(Chat, AnErrorInsideAReplyIsToldInTheServersWords) {
   });
   fs::remove(tape());
   EXPECT_SAYS(failure(refusing), "the server says: no such field");
-  EXPECT_EQ(refusing.requests, 5);
+  EXPECT_LE(refusing.requests, 4) << "as after a status of 400: one attempt for each that was under way";
 }
 
 TEST_F(Chat, AWholeReplyIsReadWhateverTheServerCallsIt) {
@@ -740,99 +640,6 @@ TEST_F(Chat, WhereNobodyListensIsSaidAtOnceAndWhatAllWaitForOnce) {
   options.was_there = true;
   EXPECT_SAYS(message_of<MethodError>([&] { ask(&options); }), "given up after 2 attempts: ");
   EXPECT_EQ(attempts, 1);
-}
-
-TEST(FinalAnswer, IsReadFromTheEndingsThatModelsWrite) {
-  for (const char* yes : {"Final answer: yes",
-                          "reasons\nfinal answer: YES.\n\n",
-                          "**Final answer:** yes",
-                          "Final Answer: **Yes**  ",
-                          "a\r\nFinal answer: yes\r\n",
-                          "Final answer: yes\n```",
-                          "Final answer: yes<|eot_id|>",
-                          "Final answer: yes\n</s>",
-                          "Final answer: yes<|im_end|>\n",
-                          "Final answer: yes, because hearts are red.",
-                          "Final answer:\u00a0yes",
-                          "Final answer\uff1a yes",
-                          "Final answer: \u2705 yes",
-                          "Final answer: yes \U0001f600",
-                          "\\boxed{Final answer: yes}",
-                          "Final answer: $\\boxed{\\text{yes}}$",
-                          "\\[ \\text{Final answer: yes} \\]",
-                          "Final answer: yes\nLet me know if you want another command judged!",
-                          "Final answer:\nyes",
-                          "The final answer is yes.",
-                          "## Final answer\n\nYes",
-                          "> Final answer: yes",
-                          "- Final answer: `yes`",
-                          "1. Final answer: yes",
-                          "<answer>Final answer: yes</answer>",
-                          "FINAL ANSWER = YES",
-                          "Final answer - yes",
-                          "Final answer: \"yes\"",
-                          "<think>Final answer: no</think>\nFinal answer: yes",
-                          "I end with \"Final answer: yes\" or \"Final answer: no\".\nFinal answer: yes",
-                          "It is no pan.\nFinal answer: yes",
-                          "Final answer: yes\nFinal answer: yes",
-                          "\ufeffFinal answer: yes",
-                          "Final answer: <b>yes</b>",
-                          "| Final answer: yes |"})
-    try {
-      EXPECT_TRUE(final_answer(yes)) << yes;
-    } catch (const MethodError&) {
-      ADD_FAILURE() << yes;
-    }
-  EXPECT_FALSE(final_answer("It could be red, yes.\nFinal answer: no, because nothing else is."));
-}
-
-TEST(FinalAnswer, IsNoneWhereAReplySaysNothingOrBoth) {
-  for (const char* none : {"",
-                           "yes",
-                           "Final answer:",
-                           "Final answer: yes or no",
-                           "Final answer: yes, no",
-                           "Final answer: maybe",
-                           "Final answer: y",
-                           "Final answer: yes (if red)",
-                           "Final answer: not yes",
-                           "Final answer: 1 yes",
-                           "Final answer: yesterday",
-                           "Final answer: yes\nFinal answer: no",
-                           "Final answer: yes\nWait: no.",
-                           "Final answer: yes\nFinal answer: unclear",
-                           "Final answer: no, but yes",
-                           "<think>Final answer: yes</think>",
-                           "<think>Final answer: yes",
-                           "<think>no</think><think>Final answer: yes",
-                           "Final answer: yes unless it is red",
-                           "Answer: no",
-                           "Final: no",
-                           "Antwort: nein"})
-    EXPECT_THROW(final_answer(none), MethodError) << none;
-}
-
-TEST(FinalAnswer, SaysWhatIsWrongWithAReply) {
-  const auto said = [](const char* reply) { return message_of<MethodError>([&] { final_answer(reply); }); };
-  EXPECT_SAYS(said("Final answer: no\nWait ...\nFinal answer: yes"),
-              "expected one final answer, got a reply with both \"yes\" and \"no\"");
-  EXPECT_SAYS(said("<think>It is red.\nFinal answer: yes"), "got a reply whose thoughts do not end");
-}
-
-TEST(FinalAnswer, NamesMarks) {
-  using Marks = std::vector<int>;
-  for (const char* two : {"Final answer: 2, 5", "**Final answer:** 5 and 2.", "final answer is marks 2 and 5",
-                          "Final answer:\n2, 5", "<think>Final answer: 3</think>\nFinal answer: 2, 5, 2",
-                          "I end with \"Final answer: 1\".\nFinal answer: 2, 5\nThat is all."})
-    EXPECT_EQ(final_marks(two, 5), (Marks{2, 5})) << two;
-  EXPECT_EQ(final_marks("Final answer: none.", 5), Marks());
-  for (const char* no : {"", "2, 5", "Final answer:", "Final answer: 2 or 5", "Final answer: none, 2",
-                         "Final answer: the heart", "<think>Final answer: 2", "Final answer: 2\nFinal answer: unclear"})
-    EXPECT_THROW(final_marks(no, 5), MethodError) << no;
-  const auto said = [](const char* reply) { return message_of<MethodError>([&] { final_marks(reply, 5); }); };
-  EXPECT_SAYS(said("Final answer: 2, 6"), "there is no mark 6, there are 1 to 5");
-  EXPECT_SAYS(said("Final answer: 0"), "there is no mark 0");
-  EXPECT_SAYS(said("Final answer: 2\nNo.\nFinal answer: 3"), "expected one final answer, got a reply with two");
 }
 
 TEST(Prompt, AsksOfTheTargetOrTheObstacleAndFillsInEachPlaceOnce) {

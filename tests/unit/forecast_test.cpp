@@ -1,7 +1,9 @@
 // What a run is expected to take, on the seconds that the cells of real runs took: no clock.
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
+#include <lgabench/harness/counted_progress.hpp>
 #include <lgabench/harness/forecast.hpp>
 #include <lgabench/harness/schedule.hpp>
 
@@ -127,7 +129,8 @@ TEST(Forecasts, CountByRow) {
     (there ? complete : missing).push_back(&one.cell);
     if (there) costs.learn(one.cell, one.seconds);
   }
-  const Forecast all = forecast(complete, missing, costs, 1);
+  const auto none = [](const Cell&) { return false; };
+  const Forecast all = forecast(complete, missing, costs, 1, none);
   EXPECT_EQ(all.cells, 80u);
   EXPECT_EQ(all.there, 5u);
   std::map<std::string, Forecast::Row> rows;
@@ -144,6 +147,49 @@ TEST(Forecasts, CountByRow) {
   EXPECT_EQ(all.text(1), "75 cells to compute, 5 already computed: about 6 min with 1 worker");
   EXPECT_EQ(all.text(1, "finding causes"), "finding causes: 75 cells, about 6 min with 1 worker");
   EXPECT_GT(all.run_bytes, 75 * 28e3);
+}
+
+// A method that nobody has measured may take any time; what lgabench does for it is the least.
+TEST(Forecasts, SayWhatIsUnknown) {
+  std::vector<Played> played = recorded("q2", 4);
+  std::vector<const Cell*> missing;
+  Costs costs;
+  for (Played& one : played) {
+    if (one.cell.method.id == "lga_l") one.cell.method.id = one.cell.method.name = "my_method";
+    missing.push_back(&one.cell);
+  }
+  const auto is_mine = [](const Cell& cell) { return cell.method.id == "my_method"; };
+  const auto row_of = [](const Forecast& all) {
+    const auto is_row = [](const Forecast::Row& row) { return row.name == "my_method"; };
+    return *std::find_if(all.rows.begin(), all.rows.end(), is_row);
+  };
+  const Forecast all = forecast({}, missing, costs, 1, is_mine);
+  EXPECT_TRUE(all.unknown);
+  EXPECT_SAYS(all.text(1), "80 cells to compute, 0 already computed: unknown, at least ");
+  EXPECT_TRUE(row_of(all).unknown);
+  EXPECT_SAYS(row_of(all).based_on, "unknown");
+  double least = 0;
+  for (const Cell* cell : missing)
+    if (is_mine(*cell)) least += least_seconds(*cell);
+  EXPECT_NEAR(row_of(all).seconds, least, 1e-9);
+  for (const Cell* cell : missing) {
+    EXPECT_GT(least_seconds(*cell), 0);
+    EXPECT_LE(least_seconds(*cell), usual_seconds(*cell));
+  }
+  for (const Played& one : played)
+    if (is_mine(one.cell)) costs.learn(one.cell, one.seconds);
+  const Forecast later = forecast({}, missing, costs, 1, is_mine);
+  EXPECT_FALSE(later.unknown) << "its cells were played";
+  EXPECT_EQ(row_of(later).based_on, "this run's cells");
+  EXPECT_SAYS(later.text(1), ": about ");
+}
+
+TEST(Texts, OfCounts) {
+  EXPECT_EQ(count_text("asked", 0, 112, 3), "asked 0 of 112");
+  EXPECT_EQ(count_text("asked", 28, 112, 10), "asked 28 of 112, about 30 s left");
+  EXPECT_EQ(count_text("asked", 112, 112, 40), "asked 112 of 112 in 40 s");
+  EXPECT_EQ(count_text("asked", 1881, 0, 30), "asked 1881") << "nobody knows how many there will be";
+  EXPECT_EQ(count_text("asked", 113, 112, 30), "asked 113");
 }
 
 TEST(Texts, OfTimeAndSize) {

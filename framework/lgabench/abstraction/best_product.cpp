@@ -80,11 +80,14 @@ FeatureSet best_product(const Meaning& truth, const FeatureSpace& space, const s
 
 }  // namespace
 
-std::vector<FeatureSet> best_products(const Scenario& scenario, const std::string& layout, int scenes) {
+std::vector<FeatureSet> best_products(const Scenario& scenario, const std::string& layout, int scenes,
+                                      const std::function<void()>& found) {
   const std::vector<std::vector<Seen>> by_command = training_scenes(scenario, layout, scenes);
   std::vector<FeatureSet> best;
-  for (std::size_t i = 0; i < by_command.size(); ++i)
+  for (std::size_t i = 0; i < by_command.size(); ++i) {
     best.push_back(best_product(scenario.commands[i].truth.target, scenario.space, by_command[i]));
+    found();
+  }
   return best;
 }
 

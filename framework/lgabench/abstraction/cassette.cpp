@@ -16,6 +16,13 @@
 
 namespace lgabench {
 
+std::string read_word(const JsonReader& reader) {
+  constexpr std::size_t longest = 200;
+  std::string text = reader.string();
+  if (text.size() > longest || one_line(text) != text) reader.fail("one line of at most 200 bytes");
+  return text;
+}
+
 Cassette::Cassette(const fs::path& file) : file_(file) {
   if (fs::exists(file) && !read()) to_stderr("{}: the last line is cut off and was not read\n", file.string());
 }
@@ -28,10 +35,17 @@ bool Cassette::read() {
     const std::string place = fmt::format("{}: line {}", file_.string(), ++lines_);
     const Json line = parse_json(std::string_view(text).substr(size_, end - size_), place);
     const JsonReader reader(line, place);
-    reader.only({"key", "model", "request", "reply", "tokens", "seconds"});
-    replies_[reader.at("key").string()] = {reader.at("reply").string(), reader.at("tokens").integer(0, 1LL << 40),
-                                           reader.at("seconds").number()};
-    models_.insert(to_text(AskedModel::of(reader.at("model").string(), reader.at("request"))));
+    reader.only(
+        {"key", "model", "request", "reply", "tokens", "seconds", "prompt_tokens", "reply_tokens", "served", "day"});
+    const auto tokens = [&](const char* member) { return reader.at(member).integer(0, 1LL << 40); };
+    ChatReply reply{reader.at("reply").string(), tokens("tokens"), reader.at("seconds").number()};
+    if (reader.has("prompt_tokens")) reply.prompt_tokens = tokens("prompt_tokens");
+    if (reader.has("reply_tokens")) reply.reply_tokens = tokens("reply_tokens");
+    if (reader.has("served")) reply.served = read_word(reader.at("served"));
+    if (reader.has("day")) reply.day = read_word(reader.at("day"));
+    auto& served = served_[to_text(AskedModel::of(reader.at("model").string(), reader.at("request")))];
+    if (!reply.served.empty()) served.insert(reply.served);
+    replies_[reader.at("key").string()] = std::move(reply);
   }
   return size_ == text.size();
 }
@@ -67,17 +81,39 @@ std::optional<ChatReply> Cassette::find(const std::string& key) const {
   return found == replies_.end() ? std::nullopt : std::optional(found->second);
 }
 
-void Cassette::add(const std::string& key, const Json& request, const ChatReply& reply) {
+void ChatReply::add(const ChatReply& later) {
+  text = later.text;
+  tokens += later.tokens;
+  seconds += later.seconds;
+  prompt_tokens += later.prompt_tokens;
+  reply_tokens += later.reply_tokens;
+  served = later.served;
+  day = later.day;
+}
+
+void Cassette::add(const std::string& key, const Json& request, const ChatReply& reply, bool any_served) {
   const std::string model = request.at("model");
-  const Json line{{"key", key},          {"model", model},         {"request", request},
-                  {"reply", reply.text}, {"tokens", reply.tokens}, {"seconds", reply.seconds}};
+  Json line{{"key", key},          {"model", model},         {"request", request},
+            {"reply", reply.text}, {"tokens", reply.tokens}, {"seconds", reply.seconds}};
+  if (reply.prompt_tokens + reply.reply_tokens > 0)
+    line.update({{"prompt_tokens", reply.prompt_tokens}, {"reply_tokens", reply.reply_tokens}});
+  if (!reply.served.empty()) line["served"] = reply.served;
+  if (!reply.day.empty()) line["day"] = reply.day;
   const std::lock_guard lock(mutex_);
+  const std::string asked = to_text(AskedModel::of(model, JsonReader(request, "request")));
+  if (const auto before = served_.find(asked); before != served_.end() && !any_served && !reply.served.empty() &&
+                                               !before->second.empty() && before->second.count(reply.served) == 0)
+    throw MethodError(fmt::format(
+        "the server now names its model \"{}\", the replies in {} are of \"{}\"; give another --cassette, or "
+        "--any-served to keep the replies of both",
+        reply.served, file_.string(), fmt::join(before->second, "\", \"")));
   const std::string bytes = canonical(line) + '\n';
   append_file(file_, bytes);
   size_ += bytes.size();
   ++lines_;
   replies_[key] = reply;
-  models_.insert(to_text(AskedModel::of(model, JsonReader(request, "request"))));
+  std::set<std::string>& served = served_[asked];
+  if (!reply.served.empty()) served.insert(reply.served);
 }
 
 double Cassette::mean_seconds() const {
@@ -89,7 +125,9 @@ double Cassette::mean_seconds() const {
 
 std::set<std::string> Cassette::models() const {
   const std::lock_guard lock(mutex_);
-  return models_;
+  std::set<std::string> all;
+  for (const auto& asked : served_) all.insert(asked.first);
+  return all;
 }
 
 std::string Cassette::only_model() const {

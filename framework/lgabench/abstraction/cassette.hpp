@@ -15,13 +15,23 @@ namespace lgabench {
 /// What a server said to one request.
 struct ChatReply {
   std::string text;
-  long long tokens = 0;  // of prompt and reply
-  double seconds = 0;    // from the first attempt to the reply
+  long long tokens = 0;                           // of prompt and reply, as the server counts both together
+  double seconds = 0;                             // from the first attempt to the reply
+  long long prompt_tokens = 0, reply_tokens = 0;  // 0 where the server does not tell them apart
+  std::string served{};  // who answered, in the server's words: an alias stands for another model at another time
+  std::string day{};     // of the reply, in UTC: "2026-11-28"
+
+  /// Takes the place of what was said before, at the cost of both.
+  void add(const ChatReply& later);
 };
 
-/// A file of JSON lines {"key", "model", "request", "reply", "tokens", "seconds"}; each reply adds a line, which is on
-/// the disk before add() returns, so that an interrupted series of questions goes on where it stopped. May be used by
-/// several threads, and by several processes that take turns to ask.
+/// A server's name for its model, or a day: at most 200 bytes in a line. @throws InputError
+std::string read_word(const JsonReader& reader);
+
+/// A file of JSON lines {"key", "model", "request", "reply", "tokens", "seconds"}, and where they are known {"served",
+/// "day", "prompt_tokens", "reply_tokens"}; each reply adds a line, which is on the disk before add() returns, so that
+/// an interrupted series of questions goes on where it stopped. May be used by several threads, and by several
+/// processes that take turns to ask.
 class Cassette {
  public:
   /// While a Turn lives, its process alone, of all with this file, asks: no question is paid for twice.
@@ -47,14 +57,15 @@ class Cassette {
 
   /// The reply to the request of this key(), if it was ever given.
   std::optional<ChatReply> find(const std::string& key) const;
-  /// @pre in a Turn. @throws InputError if the file cannot be written.
-  void add(const std::string& key, const Json& request, const ChatReply& reply);
+  /// @pre in a Turn. @throws InputError if the file cannot be written, MethodError where the reply names another served
+  /// model than those before to this model and request, unless `any_served`.
+  void add(const std::string& key, const Json& request, const ChatReply& reply, bool any_served = false);
 
   /// Where it lies.
   const std::filesystem::path& file() const { return file_; }
   /// Of a reply; 0 where there is none.
   double mean_seconds() const;
-  /// Who replied: to_text() of each model and request, sorted.
+  /// Who was asked and replied: to_text() of each model and request, sorted.
   std::set<std::string> models() const;
   /// @throws InputError where it is not exactly one.
   std::string only_model() const;
@@ -67,7 +78,7 @@ class Cassette {
   int lines_ = 0;
   mutable std::mutex mutex_;
   std::map<std::string, ChatReply> replies_;
-  std::set<std::string> models_;
+  std::map<std::string, std::set<std::string>> served_;  // by who was asked: to_text()
 };
 
 }  // namespace lgabench

@@ -31,9 +31,7 @@ ChatReply complete(ChatClient& client, const Json& request) {
   for (int attempt = 1;; ++attempt) {
     const ChatReply reply = client.complete(request);
     const bool again = attempt > 1 && reply.text == all.text;
-    all.text = reply.text;
-    all.tokens += reply.tokens;
-    all.seconds += reply.seconds;
+    all.add(reply);
     try {
       final_answer(reply.text);
       return all;
@@ -86,7 +84,7 @@ void ChatLanguageModel::ask(const std::vector<Request>& requests, const std::str
       try {
         const Json sent = requests[i].sent();
         cassette_.add(requests[i].key, requests[i].json,
-                      requests[i].yes_or_no ? complete(*client_, sent) : client_->complete(sent));
+                      requests[i].yes_or_no ? complete(*client_, sent) : client_->complete(sent), options_.any_served);
       } catch (const NoAnswer& e) {
         no_answer = e.what();  // and is not kept, but asked again another time
       } catch (const MethodError& e) {
@@ -196,7 +194,12 @@ ChatReply ChatLanguageModel::counted(const Request& request) {
   ++cost_.lm_queries;
   cost_.lm_tokens += reply.tokens;
   cost_.lm_seconds += reply.seconds;
+  if (!reply.served.empty() && reply.served != asked_model_.name) served_.insert(reply.served);
   return reply;
+}
+
+std::string ChatLanguageModel::model() const {
+  return served_.empty() ? options_.model : fmt::format("{} (served: {})", options_.model, fmt::join(served_, ", "));
 }
 
 std::vector<bool> ChatLanguageModel::answer(const Command& command, const FeatureSpace& space,

@@ -2,6 +2,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,7 @@ struct ChatOptions {
   std::function<void(int asked, int all)> progress = {};  // called from answer()'s thread alone, every 10 s at least
   std::function<void(const std::string&)> waiting = {};   // told, in a line, what the model waits for; likewise
   std::function<void(bool begins)> in_line = {};          // told where the model waits for another process that asks
+  bool any_served = false;                                // as of Cassette::add()
 };
 
 /// The messages of a request, made of a prompt.
@@ -80,8 +82,9 @@ class ChatLanguageModel : public LanguageModel {
   std::vector<int> look(const Command& command, const std::string& png, int marks);
   /// How many of these questions would go to a server: those without a reply in the cassette.
   int open_questions(const Command& command, const FeatureSpace& space, const std::vector<Question>& questions) const;
-  /// As in ChatOptions: what is not the usual request belongs to the name.
-  std::string model() const override { return options_.model; }
+  /// As in ChatOptions: what is not the usual request belongs to the name. Where the server called the model otherwise
+  /// in the replies until now: "NAME (served: OTHER, ...)".
+  std::string model() const override;
   /// live once this object had a reply from the server, else cassette.
   Provenance provenance() const override { return asked_ > 0 ? Provenance::live : Provenance::cassette; }
   SelectionCost cost() const override { return cost_; }
@@ -113,6 +116,7 @@ class ChatLanguageModel : public LanguageModel {
   PromptTemplate template_{"selection.txt"}, of_meaning_{"meaning.txt"}, of_hypotheses_{"hypotheses.txt"};
   int asked_ = 0, without_answer_ = 0;
   SelectionCost cost_;
+  std::set<std::string> served_;  // names of whose replies were counted
 };
 
 }  // namespace lgabench

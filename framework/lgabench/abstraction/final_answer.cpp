@@ -7,6 +7,8 @@
 #include <cctype>
 #include <optional>
 #include <set>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <lgabench/core/contains.hpp>
@@ -68,19 +70,18 @@ bool is_condition(const std::string& word) {
   return contains(conditions, word);
 }
 
-// What stands after the thoughts of a model that marks them.
-std::string without_thoughts(const std::string& reply) {
-  const std::string begin = "<think>", end = "</think>";
-  const std::size_t ended = reply.rfind(end);
-  std::string rest = ended == std::string::npos ? reply : reply.substr(ended + end.size());
-  if (rest.find(begin) != std::string::npos)
-    throw MethodError("language model: expected an answer after \"</think>\", got a reply whose thoughts do not end");
-  return rest;
+// A line after the answer that begins with such a word speaks of the answer; any other may be a pleasantry.
+bool comes_back_to_it(const std::string& word) {
+  constexpr std::array first_words{"yes", "no", "or", "wait", "actually", "rather", "correction", "sorry", "hmm"};
+  return contains(first_words, word);
 }
 
+// The reply's last bytes, from a character's beginning on.
 std::string end_of(const std::string& reply) {
   constexpr std::size_t shown = 80;
-  return reply.substr(reply.size() - std::min(reply.size(), shown));
+  std::size_t begin = reply.size() - std::min(reply.size(), shown);
+  while (begin < reply.size() && (static_cast<unsigned char>(reply[begin]) & 0xc0) == 0x80) ++begin;
+  return reply.substr(begin);
 }
 
 // None where the reply has no answer, or more than one.
@@ -94,9 +95,15 @@ std::optional<bool> answer_in(const std::string& reply) {
   };
   if (std::any_of(statements.begin(), statements.end(), contradicts))
     throw MethodError("language model: expected one final answer, got a reply with both \"yes\" and \"no\"");
+  int line = words[last.end - 1].line;
+  bool counts = true;
   for (std::size_t i = last.end; i < words.size(); ++i) {
-    if (words[i].text == (*last.answer ? "no" : "yes") || (*last.answer && words[i].text == "not")) return std::nullopt;
-    if (words[i].line == words[last.end - 1].line && is_condition(words[i].text)) return std::nullopt;
+    const auto& [word, at] = words[i];
+    if (at != line) counts = comes_back_to_it(word);
+    line = at;
+    if (!counts) continue;
+    if (word == (*last.answer ? "no" : "yes") || (*last.answer && word == "not")) return std::nullopt;
+    if (at == words[last.end - 1].line && is_condition(word)) return std::nullopt;
   }
   return last.answer;
 }
@@ -121,6 +128,26 @@ std::optional<std::set<int>> marks_at(const std::vector<Word>& words, std::size_
 }
 
 }  // namespace
+
+// The models' own marks, and those that servers pass on: of DeepSeek and Qwen, Mistral, Kimi, Seed-OSS and gpt-oss.
+std::string without_thoughts(const std::string& reply) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> marks{
+      {{"<think>", "</think>"},
+       {"<thinking>", "</thinking>"},
+       {"<thought>", "</thought>"},
+       {"[THINK]", "[/THINK]"},
+       {"\u25c1think\u25b7", "\u25c1/think\u25b7"},
+       {"<seed:think>", "</seed:think>"},
+       {"<|channel|>analysis", "<|channel|>final<|message|>"}}};
+  std::string_view rest = reply;
+  for (const auto& [begin, end] : marks) {
+    if (const std::size_t ended = rest.rfind(end); ended != rest.npos) rest.remove_prefix(ended + end.size());
+    if (rest.find(begin) != rest.npos)
+      throw MethodError(
+          fmt::format("language model: expected an answer after \"{}\", got a reply whose thoughts do not end", end));
+  }
+  return std::string(rest);
+}
 
 std::vector<int> final_marks(const std::string& reply, int most) {
   const std::vector<Word> words = words_of(without_thoughts(reply));

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <optional>
 
+#include <lgabench/abstraction/final_answer.hpp>
 #include <lgabench/core/error.hpp>
 
 namespace lgabench {
@@ -43,9 +44,7 @@ std::optional<std::string> object_in(const std::string& text, std::size_t from, 
 // What `read` makes of the reply's answer.
 template <class Read>
 auto read_answer(const std::string& reply, Read&& read) {
-  const std::string thought = "</think>", answer = "final answer";
-  const std::size_t end = reply.rfind(thought);
-  const std::string said = end == std::string::npos ? reply : reply.substr(end + thought.size());
+  const std::string said = without_thoughts(reply), answer = "final answer";
   std::string lower = said;
   std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
   const std::size_t at = lower.rfind(answer);

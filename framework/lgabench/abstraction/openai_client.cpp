@@ -1,12 +1,14 @@
 #include <lgabench/abstraction/openai_client.hpp>
 
 #include <curl/curl.h>
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <ctime>
 #include <mutex>
 #include <string_view>
 #include <thread>
@@ -14,19 +16,15 @@
 #include <vector>
 
 #include <lgabench/abstraction/completion.hpp>
+#include <lgabench/abstraction/server_response.hpp>
 #include <lgabench/core/error.hpp>
-#include <lgabench/core/terminal.hpp>
 
 namespace lgabench {
 namespace {
 
-struct Response {
-  long status = 0;  // 0: none came
-  std::string body, problem;
-  double retry_after_s = 0;
-  bool final = false;    // waiting will not help: no certificate that this machine trusts, or a reply without end
-  bool late = false;     // the request was sent, and no whole reply came in time
-  bool refused = false;  // nobody listens there
+struct Response : ServerResponse {
+  bool late = false;    // the request was sent, and no whole reply came in time
+  bool absent = false;  // nobody listens there, or no such host is known
 };
 
 // Fewer bytes than were given end the transfer.
@@ -92,14 +90,15 @@ Response post(CURL* handle, const OpenAiOptions& options, const std::string& bod
   const CURLcode code = curl_easy_perform(handle);
   if (code != CURLE_OK) {
     const bool untrusted = code == CURLE_PEER_FAILED_VERIFICATION, too_long = code == CURLE_WRITE_ERROR;
-    response.final = untrusted || too_long;
+    const bool no_address = code == CURLE_UNSUPPORTED_PROTOCOL || code == CURLE_URL_MALFORMAT;
+    response.final = untrusted || too_long || no_address;
     long sent = 0;
     curl_easy_getinfo(handle, CURLINFO_REQUEST_SIZE, &sent);
     response.late = code == CURLE_OPERATION_TIMEDOUT && sent > 0;
     const bool tls = untrusted || code == CURLE_SSL_CONNECT_ERROR || code == CURLE_SSL_CACERT_BADFILE;
     long error = 0;
     curl_easy_getinfo(handle, CURLINFO_OS_ERRNO, &error);
-    response.refused = code == CURLE_COULDNT_CONNECT && error == ECONNREFUSED;
+    response.absent = (code == CURLE_COULDNT_CONNECT && error == ECONNREFUSED) || code == CURLE_COULDNT_RESOLVE_HOST;
     response.problem = too_long ? fmt::format("a reply of more than {} bytes", OpenAiClient::most_bytes)
                                 : (tls ? "TLS: " : "") + std::string(*problem ? problem : curl_easy_strerror(code));
     if (!proxy.empty()) response.problem += fmt::format(", through the proxy {}", provider({proxy, ""}));
@@ -109,40 +108,10 @@ Response post(CURL* handle, const OpenAiOptions& options, const std::string& bod
   curl_off_t seconds = 0;
   if (curl_easy_getinfo(handle, CURLINFO_RETRY_AFTER, &seconds) == CURLE_OK)
     response.retry_after_s = static_cast<double>(seconds);
+  const char* moved_to = nullptr;
+  if (curl_easy_getinfo(handle, CURLINFO_REDIRECT_URL, &moved_to) == CURLE_OK && moved_to) response.moved_to = moved_to;
+  response.body = mended_json(response.body);
   return response;
-}
-
-constexpr std::size_t shown = 200;  // of a server's words
-
-bool may_pass(long status) { return status == 408 || status == 409 || status == 429 || status >= 500; }
-
-// A server may repeat the key wherever it puts words.
-std::string without_key(std::string text, const std::string& key) {
-  constexpr std::string_view instead = "(key)";
-  for (std::size_t at = 0; !key.empty() && (at = text.find(key, at)) != std::string::npos; at += instead.size())
-    text.replace(at, key.size(), instead);
-  return text;
-}
-
-// An error in the place of a reply, as from a model that is still loading: another attempt may find one, unless the
-// error's code says otherwise. Empty for what is to be read.
-std::string passing_error(const Response& response) {
-  const Json body = response.status == 200 ? json_or_null(response.body) : Json();
-  if (!body.is_object() || body.contains("choices")) return "";
-  const Json error = body.value("error", Json()), code = error.is_object() ? error.value("code", Json()) : Json();
-  return code.is_number_integer() && !may_pass(code.get<long>()) ? "" : completion_error(body);
-}
-
-// What went wrong, in a line.
-std::string complaint(const Response& response, const std::string& key) {
-  std::string text = response.problem;
-  if (response.status != 0) {
-    std::string message = completion_error(json_or_null(response.body));
-    if (message.empty()) message = response.body;
-    text = fmt::format("status {}: {}", response.status, without_key(message, key).substr(0, shown));
-  }
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return without_key(text, key);
 }
 
 }  // namespace
@@ -193,7 +162,7 @@ ChatReply OpenAiClient::complete(const Json& request) {
         "OPENAI_API_KEY is not set, and neither is OPENAI_BASE_URL, the address of another server; see "
         "docs/language-models.md");
   using Clock = std::chrono::steady_clock;
-  constexpr double longest_wait_s = 60, longest_retry_after_s = 600;
+  constexpr double longest_wait_s = 60;
   const Clock::time_point start = Clock::now();
   const std::string body = canonical(request);
   double wait_s = options_.first_wait_s;
@@ -202,12 +171,13 @@ ChatReply OpenAiClient::complete(const Json& request) {
     const Response response = post(handle, options_, body);
     connections_->give_back(handle);
     if (response.status != 0) connections_->was_there = true;
-    const std::string says = passing_error(response);
-    if (response.status == 200 && (says.empty() || attempt >= options_.attempts)) {
+    const auto [next, why] = verdict_of(response, options_.api_key);
+    if (next == Verdict::Next::read) {
       try {
-        ChatReply reply = read_completion(response.body);
+        ChatReply reply = read_completion(without_key(response.body, options_.api_key));
         reply.text = without_key(std::move(reply.text), options_.api_key);
         reply.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+        reply.day = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
         connections_->is_new("");
         return reply;
       } catch (const Error& e) {  // not what a completion looks like, or none that could be an answer
@@ -215,19 +185,17 @@ ChatReply OpenAiClient::complete(const Json& request) {
       }
     }
     if (response.late) throw NoAnswer(fmt::format("no reply within {} s (--reply-timeout)", options_.timeout_s));
-    const std::string what = says.empty()
-                                 ? complaint(response, options_.api_key)
-                                 : "the server says: " + one_line(without_key(says, options_.api_key).substr(0, shown));
-    const bool broke_off = response.status == 0 && !response.final;
-    if (says.empty() && !broke_off && !may_pass(response.status)) throw MethodError(what);
-    if (response.refused && !options_.was_there && !connections_->was_there)
-      throw MethodError(fmt::format("no server at {}: {}", provider(options_), what));
-    if (attempt >= options_.attempts) throw MethodError(fmt::format("given up after {} attempts: {}", attempt, what));
-    const double pause_s =
-        std::max(std::min(wait_s, longest_wait_s), std::min(response.retry_after_s, longest_retry_after_s));
-    const std::string why =
-        fmt::format("attempt {} of {}: {}; the next in {:.0f} s", attempt, options_.attempts, what, pause_s);
-    if (options_.waiting && connections_->is_new(why)) options_.waiting(why);
+    if (next == Verdict::Next::skip) throw NoAnswer(why);
+    if (next == Verdict::Next::stop) throw MethodError(why);
+    if (response.absent && !options_.was_there && !connections_->was_there)
+      throw MethodError(fmt::format("no server at {}: {}", provider(options_), why));
+    // An error in the place of a completion concerns its question: another may find the model loaded.
+    if (attempt >= options_.attempts && response.status == 200) throw NoAnswer(why);
+    if (attempt >= options_.attempts) throw MethodError(fmt::format("given up after {} attempts: {}", attempt, why));
+    const double pause_s = std::max(std::min(wait_s, longest_wait_s), response.retry_after_s);
+    const std::string told =
+        fmt::format("attempt {} of {}: {}; the next in {:.0f} s", attempt, options_.attempts, why, pause_s);
+    if (options_.waiting && connections_->is_new(told)) options_.waiting(told);
     std::this_thread::sleep_for(std::chrono::duration<double>(pause_s));
     wait_s *= 2;
   }

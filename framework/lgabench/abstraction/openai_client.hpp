@@ -7,11 +7,10 @@
 
 namespace lgabench {
 
-/// POSTs to BASE/chat/completions, to this machine's own addresses past any proxy. An attempt that finds no server
-/// where there was one, or breaks off, or is answered 408, 409, 429 or 5xx,
-/// or by an error in the place of a reply whose code is none or one of these, is followed by another, after the
-/// server's Retry-After where it names seconds (ten minutes at most); one whose reply takes too long is not.
-/// Connections are kept for the next request. No message and no reply holds the key.
+/// POSTs to BASE/chat/completions, to this machine's own addresses past any proxy. What verdict_of() says may pass, an
+/// attempt that finds no server where there was one and one that breaks off are followed by another, after the server's
+/// Retry-After where it names one; an attempt whose reply takes too long is not. Connections are kept for the next
+/// request. No message and no reply holds the key.
 class OpenAiClient : public ChatClient {
  public:
   /// Longest reply; a longer one ends the request.
@@ -22,10 +21,10 @@ class OpenAiClient : public ChatClient {
   ~OpenAiClient() override;
   OpenAiClient(const OpenAiClient&) = delete;
   OpenAiClient& operator=(const OpenAiClient&) = delete;
-  /// @throws MethodError once the attempts are used up, where nobody listens, for any other status, for a TLS
-  /// certificate that this machine does not trust (the key is then not sent), and for a body that is too long. NoAnswer
-  /// for a body that is no completion, a reply that is late, empty or a refusal, and one whose finish_reason says that
-  /// it is not whole.
+  /// @throws MethodError once the attempts are used up, where nobody listens, where verdict_of() says to stop, for a
+  /// TLS certificate that this machine does not trust (the key is then not sent), and for a body that is too long.
+  /// NoAnswer for a body that is no completion, a reply that is late, empty or a refusal, and one whose finish_reason
+  /// says that it is not whole.
   ChatReply complete(const Json& request) override;
 
  private:

@@ -8,6 +8,7 @@
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/shipped.hpp>
 #include <lgabench/core/terminal.hpp>
 
 namespace lgabench {
@@ -24,8 +25,7 @@ std::string line(const JsonReader& reader) {
 const FeatureSpace& space_of(const JsonReader& reader, std::map<std::string, FeatureSpace>& known) {
   const std::string id = reader.string();
   if (const auto found = known.find(id); found != known.end()) return found->second;
-  std::error_code none_to_list;
-  const std::vector<std::string> all = json_names(data_directory() / "spaces", none_to_list);
+  const std::vector<std::string>& all = shipped_names("spaces");
   if (!contains(all, id)) reader.fail(fmt::format("a feature space: {}", fmt::join(all, ", ")));
   return known.emplace(id, load_feature_space(id)).first->second;
 }
@@ -52,10 +52,7 @@ RecordedAnswer read_answer(const JsonReader& entry, const FeatureSpace& space, c
 
 }  // namespace
 
-std::vector<std::string> recorded_sources() {
-  std::error_code none_to_list;
-  return json_names(data_directory() / "answers", none_to_list);
-}
+std::vector<std::string> recorded_sources() { return shipped_names("answers"); }
 
 std::string recorded_source(const Scenario& scenario, const std::string& answers, bool to_edit) {
   if (answers != "recorded") return answers;
@@ -100,10 +97,16 @@ RecordedLanguageModel RecordedLanguageModel::of_file(FeatureSpace space, std::st
 
 void RecordedLanguageModel::read() const {
   if (read_) return;
-  RecordedFile recorded = read_recorded(file_);
-  model_ = recorded.model;
-  for (RecordedAnswer& one : recorded.answers)
-    if (one.space == space_.id) all_.push_back(std::move(one));
+  static MadeOnce<RecordedFile> shipped;
+  const auto keep = [this](const RecordedFile& recorded) {
+    model_ = recorded.model;
+    for (const RecordedAnswer& one : recorded.answers)
+      if (one.space == space_.id) all_.push_back(one);
+  };
+  if (is_shipped(file_))
+    keep(shipped.of(file_.string(), [this] { return read_recorded(file_); }));
+  else
+    keep(read_recorded(file_));
   read_ = true;
 }
 

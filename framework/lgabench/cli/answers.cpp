@@ -26,7 +26,7 @@ const std::vector<std::string> forms{"flat", "structured"};
 struct AnswersArguments {
   std::string suite, form = forms.front(), model, request;
   fs::path questions, from, cassette;
-  bool batch = false;
+  bool batch = false, any_served = false;
 };
 
 template <class Use>
@@ -103,7 +103,7 @@ class GivenReplies : public ChatClient {
  public:
   explicit GivenReplies(const fs::path& file) : file_(file) {
     int number = 0;
-    for (const Json& line : parse_json_lines(read_file(file), file.string())) {
+    for (const Json& line : parse_json_lines(mended_json(read_file(file)), file.string())) {
       const JsonReader reader(line, fmt::format("{}: line {}", file.string(), ++number));
       if (reader.has("custom_id")) {
         read_batch_line(reader);
@@ -116,8 +116,13 @@ class GivenReplies : public ChatClient {
       if (reader.has("system") && id_of(reader.at("system").string(), reader.at("user").string()) != id)
         reader.fail("the messages of --questions; the model was shown others");
       ChatReply reply{reader.at("reply").string()};
-      if (reader.has("tokens")) reply.tokens = reader.at("tokens").integer(0, 1LL << 40);
+      for (const auto& [member, tokens] : {std::pair("tokens", &reply.tokens),
+                                           {"prompt_tokens", &reply.prompt_tokens},
+                                           {"reply_tokens", &reply.reply_tokens}})
+        if (reader.has(member)) *tokens = reader.at(member).integer(0, 1LL << 40);
       if (reader.has("seconds")) reply.seconds = reader.at("seconds").number();
+      for (const auto& [member, word] : {std::pair("served", &reply.served), {"day", &reply.day}})
+        if (reader.has(member)) *word = read_word(reader.at(member));
       keep(reader, id, reply);
     }
     if (asked_.empty()) throw InputError(fmt::format("{}: expected a line for each question", file.string()));
@@ -168,6 +173,7 @@ void keep_replies(const AnswersArguments& a) {
   Cassette cassette(a.cassette);
   ChatOptions options{to_text(asked_model(a.model, a.request))};
   options.concurrency = 1;
+  options.any_served = a.any_served;
   ChatLanguageModel model(cassette, &replies, options);
   std::vector<std::string> unanswered;
   std::string next;
@@ -213,6 +219,9 @@ void add_answers(CLI::App& app, int& exit) {
                    ->excludes(questions)
                    ->excludes(suite);
   verb.option("--cassette FILE", a->cassette, "The file to append the replies to, for --answers cassette:FILE")
+      ->needs(from);
+  verb.option("--any-served", a->any_served,
+              "Keep replies of all the models that the replies name, as in lgabench select")
       ->needs(from);
   verb.option("--model MODEL", a->model, "The model that replied; with --batch the one to ask");
   verb.option("--request JSON", a->request, "A JSON merge patch applied to each request, as in lgabench select");

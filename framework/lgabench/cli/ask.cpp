@@ -29,6 +29,7 @@ void ask(const JsonReader& reader, const Messages& messages) {
   int before = 0;
   std::vector<std::string> unanswered;
   ChatOptions options{job.model, job.live.concurrency, job.live.max_queries};
+  options.any_served = job.live.any_served;
   options.waiting = waiting;
   options.progress = [&](int asked, int of_command) {
     const std::lock_guard lock(one_at_a_time);

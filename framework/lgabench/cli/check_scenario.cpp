@@ -17,6 +17,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/counted_progress.hpp>
 #include <lgabench/harness/expand.hpp>
 #include <lgabench/harness/missing_encoder.hpp>
 #include <lgabench/harness/suite.hpp>
@@ -151,8 +152,13 @@ int check_scenario(const CheckScenarioArguments& a) {
     layouts = layouts_of(scenario);
     layouts.resize(std::min<std::size_t>(layouts.size(), 2));
   }
+  CountedProgress progress("arms checked:", static_cast<int>(layouts.size() * arms.size()));
   for (const std::string& layout : layouts)
-    for (const std::string& arm : arms) judge_arm(scenario, layout, arm, a.scenes, *environment, report);
+    for (const std::string& arm : arms) {
+      judge_arm(scenario, layout, arm, a.scenes, *environment, report);
+      progress.tell_next();
+    }
+  progress.end();
   judge_answers(scenario, report);
   judge_sentences(scenario, report);
   to_stdout("{}\n", scenario.id);

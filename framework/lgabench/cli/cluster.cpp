@@ -66,13 +66,16 @@ Costs costs_of(const fs::path& run) {
   return costs;
 }
 
-// Seconds of the element that is expected to take longest.
-double longest_s(const RunPlan& plan, const ClusterArguments& a) {
+// Of the element that is expected to take longest; its wall_s is that on its cores.
+Forecast longest_of(const PlannedRun& planned, const ClusterArguments& a) {
   const Costs costs = costs_of(a.timings);
-  double longest = 0;
+  const auto is_unknown = [&planned](const Cell& cell) { return takes_unknown_time(cell, planned.catalogue); };
+  Forecast longest;
   for (int i = 1; i <= a.elements; ++i) {
-    const Forecast one = forecast({}, cells_of(plan.cells, {i, a.elements}), costs, a.cpus);
-    longest = std::max({longest, one.work_s / a.cpus, one.longest_s});
+    Forecast one = forecast({}, cells_of(planned.plan.cells, {i, a.elements}), costs, a.cpus, is_unknown);
+    one.wall_s = std::max(one.work_s / a.cpus, one.longest_s);
+    one.unknown = one.unknown || longest.unknown;
+    if (one.wall_s >= longest.wall_s) longest = std::move(one);
   }
   return longest;
 }
@@ -131,12 +134,19 @@ std::string merge_script(const ClusterArguments& a, const std::string& program, 
          fmt::format("{0} status {1}\nexec {0} merge {1}/whole {1}/part-*/\n", program, where);
 }
 
-std::string submit_script(const fs::path& out) {
+std::string submit_script(const fs::path& out, int elements) {
   return fmt::format(
       "#!/bin/bash\n# Options go to the array: submit --array=3,7\nset -eu\nmkdir -p {0}/logs\n"
+      "if ! command -v sbatch >/dev/null; then\n"
+      "  echo \"sbatch was not found: call this script where Slurm is. Without Slurm, GNU parallel can play the "
+      "elements,"
+      " one after another here or with -S on other machines:\" >&2\n"
+      "  echo \"  seq {1} | parallel -j1 SLURM_ARRAY_TASK_ID={{}} bash \" {0}/array.sbatch >&2\n"
+      "  echo \"  bash \" {0}/merge.sbatch >&2\n"
+      "  exit 127\nfi\n"
       "array=$(sbatch --parsable \"$@\" {0}/array.sbatch)\n"
       "sbatch --dependency=\"afterany:${{array%%;*}}\" {0}/merge.sbatch\n",
-      shell_line({out.string()}));
+      shell_line({out.string()}), elements);
 }
 
 // Options of one call, which an element would obey each time it is submitted or requeued.
@@ -154,19 +164,21 @@ int write_scripts(ClusterArguments a) {
   const double usable_s = seconds_of(a.time) - stops_before_s;
   const fs::path out = fs::absolute(a.run.out.empty() ? "runs/" + a.run.suite + "-cluster" : a.run.out);
   a.run.out = out.string();
-  const RunPlan plan = plan_run(a.run).plan;
+  const PlannedRun planned = plan_run(a.run);
+  const RunPlan& plan = planned.plan;
   if (static_cast<std::size_t>(a.elements) > plan.cells.size())
     throw InputError(fmt::format("--elements {}: the run has {} cells", a.elements, plan.cells.size()));
   const double memory_gib = a.run.memory_gib > 0 ? a.run.memory_gib : 4;
   const std::string program = shell_line({(program_directory() / "lgabench").string()});
-  write_file(out / "array.sbatch", array_script(a, program + " " + shell_line(run_words()), out, memory_gib));
+  write_file(out / array_script_name, array_script(a, program + " " + shell_line(run_words()), out, memory_gib));
   write_file(out / "merge.sbatch", merge_script(a, program, out));
-  write_file(out / "submit", submit_script(out));
+  write_file(out / "submit", submit_script(out, a.elements));
   fs::permissions(out / "submit", fs::perms::owner_exec, fs::perm_options::add);
   fs::create_directories(out / "logs");
-  const double expected_s = longest_s(plan, a);
-  to_stdout("{} cells in {} elements; the longest takes about {} on {} cores, {}\n", plan.cells.size(), a.elements,
-            duration_text(expected_s), a.cpus,
+  const Forecast longest = longest_of(planned, a);
+  const double expected_s = longest.wall_s;
+  to_stdout("{} cells in {} elements; the longest takes {} on {} cores, {}\n", plan.cells.size(), a.elements,
+            longest.unknown ? "an unknown time, at least " + duration_text(expected_s) : longest.duration(), a.cpus,
             a.timings.empty() ? "by cells measured elsewhere (--timings: by your own)"
                               : "by the cells of " + a.timings.string());
   if (expected_s > .8 * usable_s)

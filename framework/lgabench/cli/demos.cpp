@@ -1,6 +1,8 @@
 // lgabench demos: the oracle's demonstrations as a robomimic HDF5 file, and a look into one.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include <lgabench/abstraction/scenes.hpp>
@@ -11,6 +13,7 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/counted_progress.hpp>
 #include <lgabench/harness/suite.hpp>
 #include <lgabench/plugin/loader.hpp>
 
@@ -62,8 +65,17 @@ void write(const DemosArguments& a) {
   for (std::size_t c = 0; c < scenario.commands.size(); ++c)
     selected.instructions.push_back(
         {scenario.commands[c].utterance, selections.empty() ? scenario.commands[c].truth : selections[c]});
-  const auto demonstrations = instructed(
-      demonstrate(*environment, scenes, needs, scenario.utterances(), &circumstances.outcomes), scenes, selected);
+  std::vector<Demonstration> shown;
+  CountedProgress progress("demonstrations made:", a.n);
+  for (const Scene& scene : scenes) {
+    Outcomes outcomes;
+    auto one = demonstrate(*environment, {scene}, needs, scenario.utterances(), &outcomes);
+    std::move(one.begin(), one.end(), std::back_inserter(shown));
+    std::move(outcomes.begin(), outcomes.end(), std::back_inserter(circumstances.outcomes));
+    progress.tell_next();
+  }
+  progress.end();
+  const auto demonstrations = instructed(std::move(shown), scenes, selected);
   write_file(a.out, demonstrations_hdf5(demonstrations, "lgabench/" + scenario.id + "-v1", &circumstances));
   to_stdout("{}\n", a.out);
 }

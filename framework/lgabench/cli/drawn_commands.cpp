@@ -9,6 +9,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/drawn/draw.hpp>
+#include <lgabench/harness/counted_progress.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -24,7 +25,7 @@ struct DrawArguments {
 void draw_persons(const DrawArguments& a) {
   constexpr int in_scenario = 25;
   const FeatureSpace space = load_feature_space(drawn::person_grammar_json().at("space"));
-  const drawn::PersonGrammar grammar = drawn::person_grammar(space);
+  const drawn::PersonGrammar& grammar = drawn::person_grammar(space);
   const std::string suite = fmt::format("persons_{}{}", a.hints ? "hints_" : "", a.request.seed);
   std::vector<std::string> ids;
   for (int first = 0; first < a.persons; first += in_scenario) {
@@ -44,9 +45,13 @@ void draw(const DrawArguments& a) {
     throw InputError(fmt::format("--out {}: expected a new or an empty directory", a.out.string()));
   if (a.persons > 0) return draw_persons(a);
   const drawn::Lexicon lexicon = drawn::load_lexicon(a.lexicon);
-  const auto commands = drawn::draw_commands(lexicon, a.request, [&lexicon](const drawn::DrawnCommand& command) {
-    return drawn::can_be_shown(drawn::scenario_of(command, lexicon.space));
+  CountedProgress progress("commands drawn:", a.request.commands);
+  const auto commands = drawn::draw_commands(lexicon, a.request, [&](const drawn::DrawnCommand& command) {
+    const bool shown = drawn::can_be_shown(drawn::scenario_of(command, lexicon.space));
+    if (shown) progress.tell_next();
+    return shown;
   });
+  progress.end();
   for (const drawn::DrawnCommand& command : commands)
     write_file(a.out / (command.id + ".json"), drawn::readable(drawn::scenario_of(command, lexicon.space)));
   const fs::path file = a.out / (suite + ".json");

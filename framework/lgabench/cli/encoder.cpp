@@ -28,6 +28,7 @@ int show() {
 // Becomes the script that set-up uses too.
 [[noreturn]] void fetch() {
   const std::string script = (data_directory() / "fetch/encoder").string(), directory = encoder_directory().string();
+  to_stderr("fetching the sentence encoder, 90 MB, into {}\n", directory);
   ::execlp("bash", "bash", script.c_str(), directory.c_str(), nullptr);
   throw InputError(fmt::format("bash: cannot be started: {}", std::strerror(errno)));
 }

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include <lgabench/cli/help.hpp>
 #include <lgabench/core/colour.hpp>
+#include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/document/writers.hpp>
@@ -27,6 +29,10 @@ Words command_line() {
 void expect_run(const fs::path& directory) {
   std::error_code none_to_list;
   if (is_run(directory)) return;
+  if (array_elements(directory) > 0)
+    throw InputError(
+        fmt::format("{}: the parts of a run that are not merged yet; lgabench status {} shows how far they are",
+                    directory.string(), shell_line({directory.string()})));
   Words near;
   for (const fs::path& parent : {directory, fs::path("runs")})
     for (const auto& entry : fs::directory_iterator(parent, none_to_list))
@@ -34,6 +40,15 @@ void expect_run(const fs::path& directory) {
   std::sort(near.begin(), near.end());
   throw InputError(fmt::format("{}: not the directory of a run (no run.json){}{}", directory.string(),
                                near.empty() ? "" : "; runs: ", fmt::join(near, ", ")));
+}
+
+int array_elements(const fs::path& directory) {
+  std::error_code not_there;
+  const fs::path script = directory / array_script_name;
+  if (!fs::is_regular_file(script, not_there)) return 0;
+  const std::string text = read_file(script), before = "\n#SBATCH --array=1-";
+  const std::size_t at = text.find(before);
+  return at == text.npos ? 0 : static_cast<int>(std::strtol(text.c_str() + at + before.size(), nullptr, 10));
 }
 
 void name_other_version(const report::RunResults& run) {
@@ -61,6 +76,9 @@ void print_tables(const report::Report& report) {
 }
 
 void print_report(const fs::path& run, Printed what) {
+  constexpr std::size_t many = 300;  // cells: some seconds
+  if (const std::size_t cells = read_run_record(run).cells.size(); cells > many && what != Printed::table)
+    to_stderr("making the report of {} cells\n", cells);
   const report::Report report = report::write_report(run);
   if (what == Printed::json) {
     to_stdout("{}", read_file(run / report_file::summary));

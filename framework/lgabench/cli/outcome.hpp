@@ -13,8 +13,13 @@ using Words = std::vector<std::string>;
 /// The words of this program's command line, as typed.
 Words command_line();
 
-/// @throws InputError for what is no run's directory; it names runs that are near.
+/// @throws InputError for what is no run's directory; it names runs that are near, or `status` where `cluster` wrote.
 void expect_run(const fs::path& directory);
+
+/// The script of a job array that `cluster` writes into a run's directory, and how many elements the one there has; 0
+/// where there is none.
+inline constexpr const char* array_script_name = "array.sbatch";
+int array_elements(const fs::path& directory);
 
 /// Says on stderr which version made a run, if another one than this.
 void name_other_version(const report::RunResults& run);

@@ -16,6 +16,7 @@
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/core/suggest.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/counted_progress.hpp>
 #include <lgabench/harness/expand.hpp>
 
 namespace lgabench::cli {
@@ -24,6 +25,7 @@ namespace {
 struct Score {
   int scenes = 0, exact = 0, objects = 0, segments = 0, types = 0, textures = 0, unread = 0;
   SelectionCost cost{};
+  std::string model{};  // who looked
 };
 using Confusions = std::map<std::pair<std::string, std::string>, int>;  // what it is, what was read
 
@@ -129,6 +131,7 @@ std::vector<std::uint8_t> looked_at(ChatLanguageModel& model, const Command& com
     kept.assign(1, 0);
   }
   score.cost += model.cost() - before;
+  score.model = model.model();
   return kept;
 }
 
@@ -139,7 +142,8 @@ void print_row(const Reading& reading, const std::string& arm, const Score& scor
              {"scenes", score.scenes},          {"exact_scenes", score.exact},  {"objects", score.objects},
              {"segments_right", score.segments}};
     if (by_model)
-      row.update({{"unread", score.unread},
+      row.update({{"model", score.model},
+                  {"unread", score.unread},
                   {"lm_queries", score.cost.lm_queries},
                   {"lm_tokens", score.cost.lm_tokens},
                   {"lm_seconds", score.cost.lm_seconds}});
@@ -152,9 +156,18 @@ void print_row(const Reading& reading, const std::string& arm, const Score& scor
             share_of(score.exact, score.scenes), score.objects, share_of(score.segments, score.objects),
             named(score.types), named(score.textures));
   if (by_model)
-    to_stdout("  {} questions, {} tokens, {:.1f} s", score.cost.lm_queries, score.cost.lm_tokens,
-              score.cost.lm_seconds);
+    to_stdout("  {} questions, {} tokens, {:.1f} s, {}", score.cost.lm_queries, score.cost.lm_tokens,
+              score.cost.lm_seconds, score.model);
   to_stdout("\n");
+}
+
+// Of one reading.
+int scenes_of(const Suite& suite, Truth truth, const ReadingArguments& a) {
+  int scenes = 0;
+  for (const std::string& id : suite_scenario_ids(suite, suite.design))
+    for (const Arm& arm : suite_scenario(suite, id, truth).tests)
+      if (a.arms.empty() || contains(a.arms, arm.id)) scenes += a.scenes;
+  return scenes;
 }
 
 void expect_known(const Suite& suite, Truth truth, const ReadingArguments& a) {
@@ -185,8 +198,12 @@ void print_reading_scores(const Suite& suite, Truth truth, const ReadingArgument
         a.scenes, "names", "segments", "arm", "exact", "objects", "segments", "types", "textures");
   const std::vector<std::string> simulator{Reading::simulator};
   std::vector<std::string> unanswered;
-  for (const std::string& of_names : a.names.empty() ? simulator : a.names)
-    for (const std::string& of_segments : a.segments.empty() ? simulator : a.segments) {
+  const std::vector<std::string>&names = a.names.empty() ? simulator : a.names,
+        &segments = a.segments.empty() ? simulator : a.segments;
+  CountedProgress progress("scenes scored:",
+                           static_cast<int>(names.size() * segments.size()) * scenes_of(suite, truth, a));
+  for (const std::string& of_names : names)
+    for (const std::string& of_segments : segments) {
       const Reading reading{of_names, of_segments};
       const bool by_model = of_names == looked;
       const Reading by_reader = by_model ? Reading{Reading::simulator, of_segments} : reading;
@@ -217,6 +234,7 @@ void print_reading_scores(const Suite& suite, Truth truth, const ReadingArgument
             } catch (const Unanswered& e) {
               unanswered.insert(unanswered.end(), e.questions.begin(), e.questions.end());
             }
+            progress.tell_next();
           }
         }
       }

@@ -10,6 +10,7 @@
 #include <lgabench/cli/played_scenes.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/counted_progress.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/statistics/pose.hpp>
 
@@ -135,7 +136,9 @@ int rescore(const RescoreArguments& a) {
   std::string lines;
   constexpr int most_named = 10;
   int left_out = 0, failed = 0;
+  CountedProgress progress("cells judged:", static_cast<int>(run.cells.size()));
   for (const report::CellResult& cell : run.cells) {
+    progress.tell_next();
     if (cell.failed) {
       ++failed;
       continue;
@@ -158,6 +161,7 @@ int rescore(const RescoreArguments& a) {
       }
     }
   }
+  progress.end();
   print(a, rows);
   if (!a.json.empty()) write_file(a.json, lines);
   if (failed) to_stderr("{} failed cells have no episodes\n", failed);

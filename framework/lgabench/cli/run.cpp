@@ -35,12 +35,13 @@ int print_forecast(const RunPlan& plan, const Catalogue& catalogue, const Foreca
     to_stdout("shard {}/{} of a run of {} cells\n", plan.shard.index, plan.shard.count, plan.cells.size());
   std::size_t width = 3;
   for (const Forecast::Row& row : all.rows) width = std::max(width, row.name.size());
-  to_stdout("\n{:<{}}  cells  there    one core  according to\n", "row", width);
+  to_stdout("\n{:<{}}  cells  there        one core  according to\n", "row", width);
   for (const Forecast::Row& row : all.rows)
-    to_stdout("{:<{}}  {:5}  {:5}  {:>10}  {}\n", row.name, width, row.cells, row.there, duration_text(row.seconds),
+    to_stdout("{:<{}}  {:5}  {:5}  {:>14}  {}\n", row.name, width, row.cells, row.there,
+              (row.unknown ? "at least " : "") + duration_text(row.seconds),
               row.based_on.empty() ? "all there" : row.based_on);
   if (all.questions) to_stdout("\nbefore the cells: {}\n", all.questions->text());
-  to_stdout("\nabout {} with {} worker{}\n", duration_text(all.wall_s), plan.pool.jobs, plan.pool.jobs == 1 ? "" : "s");
+  to_stdout("\n{} with {} worker{}\n", all.duration(), plan.pool.jobs, plan.pool.jobs == 1 ? "" : "s");
   std::set<std::string> others;
   for (const Cell& cell : plan.cells)
     if (is_strangers(cell, catalogue)) others.insert(cell.method.name);

@@ -185,10 +185,10 @@ Json participant_hashes(const std::vector<Participant>& participants) {
 std::optional<LiveModel> live_model(const RunArguments& a, AnswerSource& answers, Json& about) {
   if (!std::holds_alternative<LiveAnswers>(answers)) {
     if (!a.model.empty() || !a.cassette.empty() || a.max_queries >= 0 || !a.request.empty() ||
-        a.reply_timeout_s != OpenAiOptions().timeout_s || a.concurrency != LiveModel().concurrency)
+        a.reply_timeout_s != OpenAiOptions().timeout_s || a.concurrency != LiveModel().concurrency || a.any_served)
       throw InputError(
-          "--model, --cassette, --max-queries, --request, --reply-timeout and --concurrency: expected --answers openai "
-          "with them");
+          "--model, --cassette, --max-queries, --request, --reply-timeout, --concurrency and --any-served: expected "
+          "--answers openai with them");
     return std::nullopt;
   }
   if (a.model.empty() || a.cassette.empty() || one_line(a.model) != a.model)
@@ -197,7 +197,7 @@ std::optional<LiveModel> live_model(const RunArguments& a, AnswerSource& answers
   const std::string model = to_text(asked_model(a.model, a.request));
   answers = LiveAnswers{model};
   about = {{"model", model}, {"provider", provider(openai_from_environment())}, {"prompt", PromptTemplate().version()}};
-  return LiveModel{a.cassette, true, a.max_queries, a.reply_timeout_s, a.concurrency};
+  return LiveModel{a.cassette, true, a.max_queries, a.reply_timeout_s, a.concurrency, a.any_served};
 }
 
 // Where --resume goes on: where the run would be, or was with another build. It begins none.
@@ -334,7 +334,7 @@ void add_run_options(Verb& verb, RunArguments& a) {
   verb.option("--max-queries N", a.max_queries,
               "With --answers openai: the most questions that a cell may ask the server; -1: no limit",
               CLI::Range(-1, 1000000), with_default, rare);
-  add_server(verb, a.request, a.reply_timeout_s, rare);
+  add_server(verb, a.request, a.reply_timeout_s, a.any_served, rare);
   verb.option("--concurrency N", a.concurrency, "With --answers openai: how many questions to ask at once",
               CLI::Range(1, 64), with_default, rare);
   verb.option("--truth released|printed", a.truth,

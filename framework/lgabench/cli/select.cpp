@@ -23,7 +23,7 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/harness/asking_progress.hpp>
+#include <lgabench/harness/counted_progress.hpp>
 #include <lgabench/harness/questions.hpp>
 #include <lgabench/harness/suite.hpp>
 
@@ -35,7 +35,7 @@ struct SelectArguments {
                               model, cassette, request, best_product;
   long reply_timeout_s = OpenAiOptions().timeout_s;
   int concurrency = 4, max_queries = -1;
-  bool json = false, score = false;
+  bool json = false, score = false, any_served = false;
   int scenes = 30;
   std::vector<std::string> names, segments, arms;
 };
@@ -48,17 +48,18 @@ struct Asked {
   std::optional<Selection> truth;
 };
 
-// Over all commands: each begins to count anew.
+// Over all commands: each begins to count anew. How many questions a score asks depends on the replies.
 class Progress {
  public:
-  void begin(int open) { line_ = AskingProgress(open); }
+  void begin(int open) { line_.emplace("asked", open, CountedProgress::Brief::told); }
   void tell(int asked, int of_command) {
-    line_.tell(before_ + asked);
+    if (!line_) line_.emplace("asked");
+    line_->tell(before_ + asked);
     if (asked == of_command) before_ += asked;
   }
 
  private:
-  AskingProgress line_;
+  std::optional<CountedProgress> line_;
   int before_ = 0;
 };
 
@@ -93,8 +94,9 @@ Answerer make_answerer(const SelectArguments& a) {
   if (!live && !a.cassette.empty()) throw InputError("--cassette: expected --answers openai with it");
   if (file.empty() && !a.model.empty())
     throw InputError(fmt::format("--model: expected --answers openai or cassette:FILE with it, not {}", a.answers));
-  if (!live && (a.max_queries >= 0 || !a.request.empty() || a.reply_timeout_s != OpenAiOptions().timeout_s))
-    throw InputError("--max-queries, --request and --reply-timeout: expected --answers openai with them");
+  if (!live &&
+      (a.max_queries >= 0 || !a.request.empty() || a.reply_timeout_s != OpenAiOptions().timeout_s || a.any_served))
+    throw InputError("--max-queries, --request, --reply-timeout and --any-served: expected --answers openai with them");
   if (std::holds_alternative<NoAnswers>(source) && !a.score)
     throw InputError("--answers none: expected --score with it");
   if (file.empty()) return answerer;
@@ -104,6 +106,7 @@ Answerer make_answerer(const SelectArguments& a) {
                       a.concurrency,
                       a.max_queries,
                       {}};
+  options.any_served = a.any_served;
   if (live) {
     OpenAiOptions server = openai_from_environment();
     server.timeout_s = a.reply_timeout_s;
@@ -289,7 +292,7 @@ void add_select(CLI::App& app, int&) {
               "The server's model; for a cassette, the model whose replies to use (default: its only one)");
   verb.option("--concurrency N", arguments->concurrency, "How many questions to ask at once", CLI::Range(1, 64),
               with_default);
-  add_server(verb, arguments->request, arguments->reply_timeout_s);
+  add_server(verb, arguments->request, arguments->reply_timeout_s, arguments->any_served);
   verb.option("--max-queries N", arguments->max_queries, "The most questions to ask a server; -1: no limit",
               CLI::Range(-1, 1000000), with_default);
   verb->footer(

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <vector>
@@ -15,6 +16,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/counted_progress.hpp>
 #include <lgabench/harness/expand.hpp>
 #include <lgabench/statistics/statistics.hpp>
 
@@ -67,8 +69,15 @@ std::string arm_of(const Scenario& scenario, int command) {
   return "";
 }
 
+int commands_of(const Suite& suite, Truth truth) {
+  std::size_t commands = 0;
+  for (const std::string& id : suite_scenario_ids(suite, suite.design))
+    commands += suite_scenario(suite, id, truth).commands.size();
+  return static_cast<int>(commands);
+}
+
 Scores scores_of(const std::string& asking, const Suite& suite, Truth truth, int scenes,
-                 const WithAnswers& with_answers) {
+                 const WithAnswers& with_answers, CountedProgress& progress) {
   Scores all;
   for (const std::string& id : suite_scenario_ids(suite, suite.design)) {
     const Scenario scenario = suite_scenario(suite, id, truth);
@@ -88,6 +97,7 @@ Scores scores_of(const std::string& asking, const Suite& suite, Truth truth, int
                                 title_of(scenario, command, arm),
                                 command.ambiguous,
                                 {"", asking, scored, selection.cost.lm_queries, kept == first ? 0 : 1}});
+        progress.tell_next();
       }
     });
   }
@@ -190,14 +200,16 @@ void print_misread(const Scores& scores) {
 void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const WithAnswers& with_answers) {
   std::map<std::string, Scores> by_asking;
   std::string left_out;
+  CountedProgress progress("commands scored:", static_cast<int>(std::size(ways_of_asking)) * commands_of(suite, truth));
   for (const char* asking : ways_of_asking) {
     try {
-      by_asking[asking] = scores_of(asking, suite, truth, scenes, with_answers);
+      by_asking[asking] = scores_of(asking, suite, truth, scenes, with_answers, progress);
     } catch (const InputError& e) {
       by_asking.erase(asking);
       left_out += fmt::format("{}: {}\n", asking, one_line(e.what()));
     }
   }
+  progress.end();
   std::vector<Covered> covered;
   try {
     covered = coverage_of(suite, truth, with_answers);
@@ -255,9 +267,11 @@ void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const 
 void write_best_products(const Suite& suite, Truth truth, const std::filesystem::path& file) {
   constexpr int scenes = 1000;
   Json answers = Json::array();
+  CountedProgress progress("commands solved:", commands_of(suite, truth));
   for (const std::string& id : suite_scenario_ids(suite, suite.design)) {
     const Scenario scenario = suite_scenario(suite, id, truth);
-    const std::vector<FeatureSet> best = best_products(scenario, suite.design.layouts.front(), scenes);
+    const std::vector<FeatureSet> best =
+        best_products(scenario, suite.design.layouts.front(), scenes, [&progress] { progress.tell_next(); });
     for (std::size_t i = 0; i < best.size(); ++i)
       answers.push_back(Json{{"space", scenario.space.id},
                              {"scenario", scenario.answers_of},

@@ -8,6 +8,7 @@
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/parallel.hpp>
+#include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/report/index.hpp>
@@ -62,7 +63,7 @@ std::vector<fs::path> runs_in(const fs::path& directory) {
   std::error_code none_there;
   for (const auto& entry : fs::directory_iterator(directory, none_there))
     if (entry.path().filename() != "whole" && is_run(entry.path())) runs.push_back(entry.path());
-  if (runs.empty()) expect_run(directory);
+  if (runs.empty() && array_elements(directory) == 0) expect_run(directory);
   std::sort(runs.begin(), runs.end());
   return runs;
 }
@@ -79,12 +80,30 @@ std::string ranges(const std::set<int>& numbers) {
   return text;
 }
 
+// Before an element of an array has begun.
+int print_none_begun(const std::vector<fs::path>& directories, bool json) {
+  for (const fs::path& directory : directories) {
+    const int elements = array_elements(directory);
+    std::set<int> all;
+    for (int i = 1; i <= elements; ++i) all.insert(all.end(), i);
+    if (json)
+      to_stdout(
+          "{}\n",
+          canonical({{"shards", elements}, {"parts", Json::array()}, {"array", ranges(all)}, {"absent", ranges(all)}}));
+    else
+      to_stdout("{}: {} of {} parts missing, none has begun\nto submit: {}\n", one_line(directory.string()), elements,
+                elements, shell_line({(directory / "submit").string()}));
+  }
+  return cells_failed;
+}
+
 int print_status(const std::vector<fs::path>& directories, bool json) {
   std::vector<Part> parts;
   for (const fs::path& directory : directories)
     for (const fs::path& run : runs_in(directory)) parts.push_back(read_part(run));
   std::sort(parts.begin(), parts.end(),
             [](const Part& a, const Part& b) { return std::pair(a.shard, a.name) < std::pair(b.shard, b.name); });
+  if (parts.empty()) return print_none_begun(directories, json);
   const int shards = parts.front().shards;
   std::set<int> open;
   for (int i = 1; i <= shards; ++i) open.insert(i);

@@ -144,7 +144,7 @@ void add_python(Verb& verb, std::string& python, More... more) {
 
 /// How a server is asked. --ca-file is for the workers too, which read the variable.
 template <class... More>
-void add_server(Verb& verb, std::string& request, long& reply_timeout_s, More... more) {
+void add_server(Verb& verb, std::string& request, long& reply_timeout_s, bool& any_served, More... more) {
   verb.option("--request JSON", request,
               "With --answers openai: a JSON merge patch applied to each request; null removes a field: "
               "'{\"temperature\": null, \"reasoning_effort\": \"low\"}'",
@@ -158,6 +158,10 @@ void add_server(Verb& verb, std::string& request, long& reply_timeout_s, More...
               CLI::ExistingFile, more...);
   verb.option("--reply-timeout SECONDS", reply_timeout_s, "With --answers openai: seconds to wait for a reply",
               CLI::Range(1, 1000000), with_default, more...);
+  verb.option("--any-served", any_served,
+              "With --answers openai: go on where the server begins to name another model than in the cassette's "
+              "replies, and name all of them as the source",
+              more...);
 }
 
 /// --scenario-path, as every verb that reads scenarios has it.

@@ -1,7 +1,7 @@
 #include <lgabench/core/feature_space.hpp>
 
 #include <lgabench/core/contains.hpp>
-#include <lgabench/core/files.hpp>
+#include <lgabench/core/shipped.hpp>
 
 namespace lgabench {
 namespace {
@@ -26,10 +26,13 @@ std::vector<std::string> read_names(const JsonReader& reader, const std::vector<
 }  // namespace
 
 FeatureSpace load_feature_space(const std::string& id) {
+  static MadeOnce<FeatureSpace> all;
   const fs::path file = data_directory() / "spaces" / (id + ".json");
-  const Json document = read_json(file);
-  const JsonReader reader(document, file.string());
-  return {id, reader.at("object_types").strings(), reader.at("textures").strings()};
+  return all.of(file.string(), [&] {
+    const Json document = read_json(file);
+    const JsonReader reader(document, file.string());
+    return FeatureSpace{id, reader.at("object_types").strings(), reader.at("textures").strings()};
+  });
 }
 
 bool FeatureSet::contains(const std::string& object_type, const std::string& texture) const {

@@ -131,7 +131,11 @@ std::string canonical(const Json& value) {
 
 void JsonReader::fail(const std::string& expectation) const {
   std::string shown = value_.dump(-1, ' ', false, Json::error_handler_t::replace);
-  if (shown.size() > 60) shown = shown.substr(0, 57) + "...";
+  constexpr std::size_t longest = 60;
+  if (std::size_t end = longest - 3; shown.size() > longest) {
+    while ((static_cast<unsigned char>(shown[end]) & 0xc0) == 0x80) --end;  // no character is cut
+    shown = shown.substr(0, end) + "...";
+  }
   throw InputError(
       fmt::format("{}: {}: expected {}, got {}", file_, place_.empty() ? "/" : place_, expectation, shown));
 }

@@ -10,6 +10,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/scenario_files.hpp>
+#include <lgabench/core/shipped.hpp>
 #include <lgabench/core/suggest.hpp>
 
 namespace lgabench {
@@ -190,8 +191,7 @@ void read_train(const JsonReader& file, std::vector<std::string> members, const 
 // Whose answers are the scenario's recorded ones, and which of them are given to people.
 void read_answers(const JsonReader& reader, Scenario& scenario) {
   reader.only({"recorded", "edited"});
-  std::error_code none_to_list;
-  const std::vector<std::string> known = json_names(data_directory() / "answers", none_to_list);
+  const std::vector<std::string>& known = shipped_names("answers");
   const auto file = [&known](const JsonReader& name) {
     if (!contains(known, name.string())) name.fail(fmt::format("one of: {}", fmt::join(known, ", ")));
     return name.string();
@@ -325,7 +325,7 @@ std::vector<std::string> scenario_ids() {
 Scenario load_scenario(const std::string& id, Truth truth) {
   const fs::path file = scenario_file(id);
   if (file.empty()) throw InputError(none_named("scenario", id, scenario_ids()));
-  const Json json = read_json(file);
+  const Json json = read_shipped_json(file);
   Scenario s = read_scenario(truth == Truth::printed ? as_printed(json) : json, file.string());
   if (s.id != id)
     throw InputError(

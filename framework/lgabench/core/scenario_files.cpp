@@ -8,6 +8,7 @@
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/json.hpp>
+#include <lgabench/core/shipped.hpp>
 
 namespace lgabench {
 namespace {
@@ -65,7 +66,7 @@ void add_scenario_path(const fs::path& directory) {
 std::map<std::string, fs::path> scenario_files() {
   std::map<std::string, fs::path> files;
   std::error_code none_to_list;
-  for (const std::string& id : json_names(shipped(), none_to_list)) files[id] = file_in(shipped(), id);
+  for (const std::string& id : shipped_names("scenarios")) files[id] = file_in(shipped(), id);
   for (const fs::path& directory : scenario_path())
     for (const std::string& id : json_names(directory, none_to_list)) add_own(files, id, file_in(directory, id));
   return files;

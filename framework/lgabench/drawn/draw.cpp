@@ -203,7 +203,7 @@ Json suite_of_persons(const std::string& id, const std::vector<std::string>& sce
 
 Json with_other_persons(const Json& scenario, const FeatureSpace& space, std::uint64_t seed, int first) {
   if (!scenario.value("persons", false)) return scenario;
-  const PersonGrammar grammar = person_grammar(space);
+  const PersonGrammar& grammar = person_grammar(space);
   const bool hinted = hint_in(grammar, scenario.at("commands").at(0).at("utterance")) != nullptr;
   const auto count = static_cast<int>(scenario.at("commands").size());
   Json other = scenario;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include <lgabench/core/contains.hpp>
+#include <lgabench/core/shipped.hpp>
 #include <lgabench/drawn/lexicon.hpp>
 #include <lgabench/drawn/persons.hpp>
 
@@ -133,8 +134,10 @@ PersonGrammar read_person_grammar(const Json& json, const FeatureSpace& space, c
   return grammar;
 }
 
-PersonGrammar person_grammar(const FeatureSpace& space) {
-  return read_person_grammar(person_grammar_json(), space, "persons.json");
+const PersonGrammar& person_grammar(const FeatureSpace& space) {
+  static MadeOnce<PersonGrammar> all;
+  const Json key{space.id, space.object_types, space.textures};
+  return all.of(canonical(key), [&space] { return read_person_grammar(person_grammar_json(), space, "persons.json"); });
 }
 
 }  // namespace lgabench::drawn

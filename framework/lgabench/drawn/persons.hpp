@@ -57,8 +57,8 @@ struct PersonGrammar {
 PersonGrammar read_person_grammar(const Json& json, const FeatureSpace& space, const std::string& file);
 /// The shipped one, which is part of this library: a method's process reads no files.
 const Json& person_grammar_json();
-/// The shipped one, in that space, of which other names are left out.
-PersonGrammar person_grammar(const FeatureSpace& space);
+/// The shipped one, in that space, of which other names are left out. Made once for each space.
+const PersonGrammar& person_grammar(const FeatureSpace& space);
 
 /// Numbers in the space of those of the names that it has.
 std::bitset<PersonRule::most> numbers_of(const std::vector<std::string>& names, const std::vector<std::string>& space);

@@ -62,6 +62,11 @@ double count(const Json& scenario, const char* list, bool (*counts)(const Json&)
   return static_cast<double>(std::max<std::ptrdiff_t>(1, counted));
 }
 
+double demonstrations_of(const Cell& cell) {
+  return cell.demonstrations * count(*cell.scenario, "commands",
+                                     [](const Json& c) { return !c.is_object() || c.value("seen", Json()) != false; });
+}
+
 }  // namespace
 
 std::string measured_on(const Cell& cell) {
@@ -75,14 +80,16 @@ double usual_seconds(const Cell& cell) {
   if (options.value("network", Json()) == "plain") learn_ms *= network_plain;
   const Json epochs = options.value("epochs", Json(750));
   const double passes = epochs.is_number() ? epochs.get<double>() : 750;
-  const double demonstrations = cell.demonstrations * count(*cell.scenario, "commands", [](const Json& c) {
-                                  return !c.is_object() || c.value("seen", Json()) != false;
-                                });
-  const double episodes = cell.episodes * count(*cell.scenario, cell.scenario->contains("played") ? "played" : "tests",
-                                                [](const Json&) { return true; });
+  const double demonstrations = demonstrations_of(cell);
   const double learn_s = options.value("policy", Json()) == "heat_map" ? heat_map_s * std::min(demonstrations, 16.)
                                                                        : demonstrations * passes * learn_ms / 1000;
-  return start_s + demonstrations * demonstration_s + learn_s + episodes * episode_s;
+  return least_seconds(cell) + learn_s;
+}
+
+double least_seconds(const Cell& cell) {
+  const double episodes = cell.episodes * count(*cell.scenario, cell.scenario->contains("played") ? "played" : "tests",
+                                                [](const Json&) { return true; });
+  return start_s + demonstrations_of(cell) * demonstration_s + episodes * episode_s;
 }
 
 void Costs::learn(const Cell& cell, double seconds) {

@@ -10,6 +10,8 @@ namespace lgabench {
 /// Seconds of a cell by what was measured once (the data directory's measured/costs.json): of its method and network
 /// for each demonstration and pass over it, and of each demonstration and episode. @throws InputError
 double usual_seconds(const Cell& cell);
+/// Of these, seconds of all but what the method takes to learn.
+double least_seconds(const Cell& cell);
 /// The measured method that stands in for a cell's unmeasured one; "" if the cell's was measured.
 std::string measured_on(const Cell& cell);
 

@@ -35,11 +35,13 @@ std::string Forecast::text(int jobs, const std::string& purpose) const {
   const std::string count = fmt::format("{} cell{}", cells - there, cells - there == 1 ? "" : "s");
   const std::string what = purpose.empty() ? fmt::format("{} to compute, {} already computed:", count, there)
                                            : fmt::format("{}: {},", purpose, count);
-  return fmt::format("{} about {} with {} worker{}", what, duration_text(wall_s), jobs, jobs == 1 ? "" : "s");
+  return fmt::format("{} {} with {} worker{}", what, duration(), jobs, jobs == 1 ? "" : "s");
 }
 
+std::string Forecast::duration() const { return (unknown ? "unknown, at least " : "about ") + duration_text(wall_s); }
+
 Forecast forecast(const std::vector<const Cell*>& complete, const std::vector<const Cell*>& missing, const Costs& costs,
-                  int jobs) {
+                  int jobs, const std::function<bool(const Cell&)>& is_unknown) {
   Forecast all;
   const auto row_of = [&all](const Cell& cell) -> Forecast::Row& {
     for (Forecast::Row& row : all.rows)
@@ -49,17 +51,26 @@ Forecast forecast(const std::vector<const Cell*>& complete, const std::vector<co
   };
   // A cell of fewer demonstrations takes the first of those that one of more takes.
   std::map<std::tuple<std::string, std::string, std::string, std::string, std::uint64_t>, double> demonstrations;
+  std::map<std::string, bool> unknown_rows;  // by name
   const auto add = [&](const Cell& cell, bool there) {
     Forecast::Row& row = row_of(cell);
     ++row.cells, ++all.cells;
     row.there += there;
     all.there += there;
     if (there) return;
-    const double seconds = costs.expected_seconds(cell);
     const std::string other = measured_on(cell);
-    row.based_on = costs.knows(row.name) ? "this run's cells"
-                   : other.empty()       ? "cells measured elsewhere"
-                                         : other + "'s cells";
+    auto known_row = unknown_rows.find(row.name);
+    if (known_row == unknown_rows.end())
+      known_row = unknown_rows.emplace(row.name, !costs.knows(row.name) && !other.empty() && is_unknown(cell)).first;
+    const bool unknown = known_row->second;
+    const double seconds =
+        unknown ? costs.expected_seconds(row.name, least_seconds(cell)) : costs.expected_seconds(cell);
+    row.unknown = row.unknown || unknown;
+    all.unknown = all.unknown || unknown;
+    row.based_on = unknown                 ? "nobody: what the method itself takes is unknown"
+                   : costs.knows(row.name) ? "this run's cells"
+                   : other.empty()         ? "cells measured elsewhere"
+                                           : other + "'s cells";
     row.seconds += seconds;
     all.work_s += seconds;
     all.longest_s = std::max(all.longest_s, seconds);

@@ -7,6 +7,7 @@
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/json.hpp>
+#include <lgabench/core/shipped.hpp>
 
 namespace lgabench {
 
@@ -15,8 +16,8 @@ std::string missing_encoder(const std::vector<std::string>& commands) {
   if (fs::exists(encoder_directory() / "model.safetensors", error)) return "";
   const fs::path directory = data_directory() / "embeddings";
   std::set<std::string> committed;
-  for (const std::string& name : json_names(directory, error)) {
-    const Json file = read_json(directory / (name + ".json"));
+  for (const std::string& name : shipped_names("embeddings")) {
+    const Json file = read_shipped_json(directory / (name + ".json"));
     for (const auto& embedding : file.at("embeddings").items()) committed.insert(embedding.key());
   }
   const auto first = std::find_if(commands.begin(), commands.end(), [&](const auto& c) { return !committed.count(c); });

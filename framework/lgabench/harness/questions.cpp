@@ -7,7 +7,7 @@
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/scratch.hpp>
-#include <lgabench/harness/asking_progress.hpp>
+#include <lgabench/harness/counted_progress.hpp>
 #include <lgabench/harness/forecast.hpp>
 
 namespace lgabench {
@@ -41,7 +41,7 @@ Questions count_questions(const LiveModel& live, const std::string& model, const
 
 bool ask_beforehand(const AskJob& job, const Questions& questions, bool quiet) {
   const Scratch scratch("ask");
-  AskingProgress progress(questions.open);
+  CountedProgress progress("asked", questions.open, CountedProgress::Brief::told);
   PoolEvents events;
   events.started = [](std::size_t) {};
   events.tick = [] {};

@@ -170,7 +170,8 @@ class Run {
   void announce() const {
     if (state_.missing.empty()) return;
     constexpr double long_s = 600;
-    const Forecast expected = forecast(state_.complete, state_.missing, schedule_.costs(), plan_.pool.jobs);
+    const Forecast expected = forecast(state_.complete, state_.missing, schedule_.costs(), plan_.pool.jobs,
+                                       [this](const Cell& cell) { return takes_unknown_time(cell, catalogue_); });
     const bool is_long = expected.wall_s > long_s;
     if (!plan_.quiet)
       put(stderr,
@@ -278,13 +279,25 @@ std::string run_hash(const std::vector<Cell>& cells, const Catalogue& catalogue)
   return sha256(all).substr(0, 8);
 }
 
+namespace {
+
+bool is_ours(const PluginInfo& method, const Catalogue& catalogue) {
+  const fs::path shipped = fs::weakly_canonical(shipped_plugin_directory());
+  return std::any_of(catalogue.plugins.begin(), catalogue.plugins.end(), [&](const PluginInfo& one) {
+    return one.sha256 == method.sha256 && fs::weakly_canonical(one.file).parent_path() == shipped;
+  });
+}
+
+}  // namespace
+
 bool is_strangers(const Cell& cell, const Catalogue& catalogue) {
   const PluginInfo* const method = cell.method.acts ? acting_plugin(cell, catalogue) : method_plugin(cell, catalogue);
-  if (!method) return false;
-  const fs::path shipped = fs::weakly_canonical(shipped_plugin_directory());
-  return std::none_of(catalogue.plugins.begin(), catalogue.plugins.end(), [&](const PluginInfo& one) {
-    return one.sha256 == method->sha256 && fs::weakly_canonical(one.file).parent_path() == shipped;
-  });
+  return method && !is_ours(*method, catalogue);
+}
+
+bool takes_unknown_time(const Cell& cell, const Catalogue& catalogue) {
+  const PluginInfo* const method = method_plugin(cell, catalogue);
+  return is_strangers(cell, catalogue) || (method && !is_ours(*method, catalogue));
 }
 
 std::string TimeSpent::text(int jobs) const {
@@ -310,7 +323,8 @@ Forecast forecast(const RunPlan& plan, const Catalogue& catalogue) {
     (there ? complete : missing).push_back(cell);
     if (there) costs.learn(*cell, recorded_seconds(directory));
   }
-  Forecast expected = forecast(complete, missing, costs, plan.pool.jobs);
+  Forecast expected = forecast(complete, missing, costs, plan.pool.jobs,
+                               [&catalogue](const Cell& cell) { return takes_unknown_time(cell, catalogue); });
   if (plan.live && plan.live->asks)
     if (const std::vector<Json> scenarios = asked_about(missing, catalogue); !scenarios.empty())
       expected.questions = count_questions(*plan.live, asked_model_of(plan), scenarios);

@@ -75,6 +75,9 @@ std::string run_hash(const std::vector<Cell>& cells, const Catalogue& catalogue)
 /// Whether what acts in the cell is a method that did not come with the installation, told by its bytes.
 bool is_strangers(const Cell& cell, const Catalogue& catalogue);
 
+/// Whether a plugin that is not lgabench's own learns or selects in the cell: nobody has measured what it takes.
+bool takes_unknown_time(const Cell& cell, const Catalogue& catalogue);
+
 /// What lgabench-worker is told of a cell. `answers` holds the plan's (keep_answers), `scratch` is empty.
 CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& cell,
                  const std::filesystem::path& directory, const std::filesystem::path& answers,

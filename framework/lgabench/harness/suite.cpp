@@ -8,6 +8,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/scenario_files.hpp>
+#include <lgabench/core/shipped.hpp>
 #include <lgabench/harness/lists.hpp>
 #include <lgabench/record/reference_rows.hpp>
 #include <lgabench/record/suite_claims.hpp>
@@ -112,9 +113,7 @@ void read_changes(const JsonReader& reader, Suite& suite) {
   const auto named = [](const char* what, const std::vector<std::string>& known) {
     return [what, &known](const JsonReader& value) { return name_among(value, what, known); };
   };
-  std::error_code none_to_list;
-  const std::vector<std::string> scenarios = scenario_ids(),
-                                 files = json_names(data_directory() / "answers", none_to_list);
+  const std::vector<std::string> scenarios = scenario_ids(), files = shipped_names("answers");
   std::vector<std::string> with_variants = own;
   if (reader.has("variants"))
     for (const std::string& scenario : own)
@@ -141,14 +140,13 @@ void read_changes(const JsonReader& reader, Suite& suite) {
 
 Suite load_suite(const std::string& id) {
   const bool is_file = fs::path(id).extension() == ".json";
-  std::error_code none_to_list;
-  auto known = json_names(data_directory() / "suites", none_to_list);
+  std::vector<std::string> known = shipped_names("suites");
   if (!is_file && !contains(known, id)) {
     known.emplace_back("or a .json file");
     throw InputError(none_named("suite", id, known));
   }
   const fs::path file = is_file ? fs::path(id) : data_directory() / "suites" / (id + ".json");
-  const Json json = read_json(file);
+  const Json json = read_shipped_json(file);
   if (is_file) add_scenario_path(fs::absolute(file).parent_path());
   const JsonReader reader(json, file.string());
   std::vector<std::string> members = needed_design_members;
@@ -189,8 +187,7 @@ const PluginInfo& default_engine(const Catalogue& catalogue) {
   for (const PluginInfo& plugin : catalogue.plugins)
     if (plugin.kind == "engine") there.push_back(&plugin);
   if (there.empty()) throw InputError("no engine is installed (lgabench list)");
-  std::error_code none_to_list;
-  for (const std::string& suite : json_names(data_directory() / "suites", none_to_list))
+  for (const std::string& suite : shipped_names("suites"))
     for (const std::string& id : load_suite(suite).design.engines)
       for (const PluginInfo* engine : there)
         if (engine->id == id) return *engine;

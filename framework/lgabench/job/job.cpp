@@ -59,6 +59,7 @@ static void fields(LiveModel& live, Fields& field) {
   field("max_queries", live.max_queries, within(-1, 1 << 30));
   field("reply_timeout_s", live.reply_timeout_s, within(1, 1 << 30));
   field("concurrency", live.concurrency, within(1, 64));
+  field("any_served", live.any_served);
 }
 
 static void fields(CellJob& job, Fields& field) {

@@ -28,7 +28,8 @@ struct LiveModel {
   bool asks = true;      // false: the cassette must hold every reply
   int max_queries = -1;  // of a cell to the server; -1: no limit
   long reply_timeout_s = OpenAiOptions().timeout_s;
-  int concurrency = 4;  // questions under way at once; cells take turns
+  int concurrency = 4;      // questions under way at once; cells take turns
+  bool any_served = false;  // as of Cassette::add()
 };
 
 /// lgabench-worker cell

@@ -7,18 +7,18 @@
 #include <lgabench/abstraction/prompt.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/shipped.hpp>
 #include <lgabench/record/fields.hpp>
 #include <lgabench/record/layout.hpp>
 
 namespace lgabench {
 namespace {
 
-// SHA-256 over the names and contents of a folder's JSON files.
-std::string folder_hash(const fs::path& folder) {
-  std::error_code none_to_hash;
+// SHA-256 over the names and contents of the JSON files in a folder of the data.
+std::string folder_hash(const std::string& folder) {
   std::string lines;
-  for (const std::string& name : json_names(folder, none_to_hash))
-    lines += fmt::format("{}.json {}\n", name, sha256_file(folder / (name + ".json")));
+  for (const std::string& name : shipped_names(folder))
+    lines += fmt::format("{}.json {}\n", name, shipped_sha256(data_directory() / folder / (name + ".json")));
   return sha256(lines);
 }
 
@@ -131,13 +131,13 @@ std::string key(const Cell& cell) { return sha256(canonical(to_json(cell))).subs
 
 Json data_hashes(const Scenario& scenario, const AnswerSource& answers, const Reading& reading) {
   const fs::path data = data_directory();
-  Json hashes{{"feature_space", sha256_file(data / "spaces" / (scenario.space.id + ".json"))},
-              {"answers", folder_hash(data / "answers")},
-              {"embeddings", folder_hash(data / "embeddings")}};
-  if (const fs::path own = data / scenario.environment; fs::is_directory(own)) hashes["environment"] = folder_hash(own);
+  Json hashes{{"feature_space", shipped_sha256(data / "spaces" / (scenario.space.id + ".json"))},
+              {"answers", folder_hash("answers")},
+              {"embeddings", folder_hash("embeddings")}};
+  if (fs::is_directory(data / scenario.environment)) hashes["environment"] = folder_hash(scenario.environment);
   if (std::holds_alternative<LiveAnswers>(answers)) hashes["prompt"] = PromptTemplate().version();
   if (const fs::path file = reader_file(scenario.environment, reading); !file.empty())
-    hashes["reader"] = sha256_file(file);
+    hashes["reader"] = shipped_sha256(file);
   return hashes;
 }
 

@@ -146,9 +146,15 @@ def _of_inspect(file: pathlib.Path) -> tuple[list[Reply], str, dict[str, Any]]:
             continue  # cut off or refused: lgabench takes no answer from such a reply either
         system, user = (message.text for message in sample.messages[:2])
         replies.append({"suite": sample.metadata["suite"], "form": sample.metadata["form"], "id": str(sample.id), "system": system,
-                        "user": user, "reply": output.completion, "tokens": output.usage.total_tokens if output.usage else 0,
-                        "seconds": output.time or 0.})
+                        "user": user, "reply": output.completion, "seconds": output.time or 0.,
+                        **({"served": output.model} if output.model else {}), **_tokens_of(output.usage)})
     return replies, log.eval.model, request
+
+
+def _tokens_of(usage: Any) -> dict[str, int]:
+    if not usage:
+        return {}
+    return {"tokens": usage.total_tokens, "prompt_tokens": usage.input_tokens, "reply_tokens": usage.output_tokens}
 
 
 def _of_lm_eval(file: pathlib.Path) -> tuple[list[Reply], str, dict[str, Any]]:
