@@ -16,6 +16,13 @@
 
 namespace lgabench {
 
+double read_reply_seconds(const JsonReader& reader) {
+  constexpr double most = 1e9;
+  const double seconds = reader.number();
+  if (!(seconds >= 0 && seconds <= most)) reader.fail(fmt::format("seconds from 0 to {:g}", most));
+  return seconds;
+}
+
 Cassette::Cassette(const fs::path& file) : file_(file) {
   if (fs::exists(file) && !read()) to_stderr("{}: the last line is cut off and was not read\n", file.string());
 }
@@ -30,7 +37,7 @@ bool Cassette::read() {
     const JsonReader reader(line, place);
     reader.only({"key", "model", "request", "reply", "tokens", "seconds"});
     replies_[reader.at("key").string()] = {reader.at("reply").string(), reader.at("tokens").integer(0, 1LL << 40),
-                                           reader.at("seconds").number()};
+                                           read_reply_seconds(reader.at("seconds"))};
     models_.insert(to_text(AskedModel::of(reader.at("model").string(), reader.at("request"))));
   }
   return size_ == text.size();

@@ -117,7 +117,7 @@ class GivenReplies : public ChatClient {
         reader.fail("the messages of --questions; the model was shown others");
       ChatReply reply{reader.at("reply").string()};
       if (reader.has("tokens")) reply.tokens = reader.at("tokens").integer(0, 1LL << 40);
-      if (reader.has("seconds")) reply.seconds = reader.at("seconds").number();
+      if (reader.has("seconds")) reply.seconds = read_reply_seconds(reader.at("seconds"));
       keep(reader, id, reply);
     }
     if (asked_.empty()) throw InputError(fmt::format("{}: expected a line for each question", file.string()));
