@@ -1,9 +1,11 @@
 // An entry that somebody sends, and the pages that a board makes of some: entry.json in the first line, then
 // cells.jsonl.
 #include <algorithm>
+#include <utility>
 
 #include <lgabench/core/hash.hpp>
 #include <lgabench/leaderboard/pages.hpp>
+#include <lgabench/leaderboard/said.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 
 #include "../unit/leaderboard_board.hpp"
@@ -61,7 +63,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const Json cell = json_or_null(line);
       cells += (cell.is_object() ? canonical(cell) : std::string(line)) + "\n";
     }
-  fuzz::write(board / place / "entry.json", json.is_null() ? std::string(text.substr(0, end)) : json.dump(1) + "\n");
+  fuzz::write(board / place / "entry.json",
+              json.is_null() ? std::string(text.substr(0, end)) : text_of_entry(std::move(json)));
   if (end < text.size()) fuzz::write(board / place / "cells.jsonl", cells);
   try {
     Entry entry = read_entry(board, place);

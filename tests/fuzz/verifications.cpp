@@ -37,7 +37,7 @@ void put_right(Json& line, const Entry& entry) {
   const std::size_t cells = std::min(line["cells"].size(), entry.cells.size());
   line["cells"] = Json::array();
   int episodes = 0;
-  for (const std::size_t i : fresh ? fresh_cells(entry, nonce) : chosen_cells(entry, nonce, cells)) {
+  for (const std::size_t i : fresh ? fresh_cells(entry, nonce) : chosen_cells(entry, entry.hash(), nonce, cells)) {
     line["cells"].push_back(entry.cells[i].key);
     episodes += entry.cells[i].episodes();
   }
@@ -70,8 +70,9 @@ void look_at(const fs::path& board, const Entry& entry, bool at_pages) {
 // What read_entry() does with them, whose other files are always the same.
 void add_lines(Entry& entry, const std::string& lines) {
   int number = 0;
+  const std::string hash = entry.hash();
   for (const Json& line : parse_json_lines(lines, "verifications.jsonl")) {
-    expect_verification(JsonReader(line, fmt::format("verifications.jsonl: line {}", ++number)), entry);
+    expect_verification(JsonReader(line, fmt::format("verifications.jsonl: line {}", ++number)), entry, hash);
     entry.verifications.push_back(line);
   }
 }
@@ -107,7 +108,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const bool written [[maybe_unused]] = (write_entry(board, made()), true);
   fuzz::write(board / entry.place() / "verifications.jsonl", lines);
   try {
-    read_entry(board, entry.place(), all);
+    read_entry(board, entry.place(), &all);
   } catch (const InputError&) {
   }
   return 0;

@@ -10,7 +10,7 @@ import subprocess
 import unittest
 
 from answers_test import SECRET, Server
-from case import BUILD, command_line
+from case import BUILD, command_line, read_entry
 from leaderboard_test import META, SUITE, Board
 
 PRESET = {"scene_seed": 77, "test_scenes": "per_seed"}
@@ -74,7 +74,7 @@ class AnswersAlone(Board):
         place, digest = self.enter("made_up"), self.digest("made_up")
         kept = self.dir / "board/answers" / (digest + ".json")
         self.assertEqual(kept.read_bytes(), (self.dir / "made_up.json").read_bytes())
-        entry = json.loads((place / "entry.json").read_text())
+        entry = read_entry(place / "entry.json")
         self.assertEqual(entry["identity"]["answers"], {"source": "file:" + digest, "sha256": digest})
         self.assertEqual((entry["identity"]["acts"]["id"], entry["identity"]["acts"]["options"]["policy"]), ("lga", "heat_map"))
         selected, = entry["phi"]["letter"][0]
@@ -115,7 +115,7 @@ class AnswersAlone(Board):
         self.assertRegex(page, r"missed: [^<]*letter T")
         text = (place / "entry.json").read_text()
         now = score["groups"]["all"]["exact_scenes"]
-        better = json.loads(text)
+        better = read_entry(place / "entry.json")
         better["score"]["groups"]["all"]["exact_scenes"] = now + 1
         (place / "entry.json").write_text(json.dumps(better, indent=1, ensure_ascii=False) + "\n")
         refused = self.leaderboard("verify", "--by", "B. Reader", expect=2).stderr
@@ -123,7 +123,8 @@ class AnswersAlone(Board):
         better["score"]["groups"]["all"]["exact_scenes"] = better["score"]["groups"]["all"]["scenes"] + 1
         (place / "entry.json").write_text(json.dumps(better, indent=1, ensure_ascii=False) + "\n")
         self.assertIn("/score/groups/all/exact_scenes: expected", self.leaderboard("check", expect=1).stderr)
-        older = json.loads(text)  # of before the list
+        (place / "entry.json").write_text(text)
+        older = read_entry(place / "entry.json")  # of before the list
         last = older["score"].pop("models")[-1]
         older["score"] = dict(sorted({**older["score"], "model": last}.items()))
         (place / "entry.json").write_text(json.dumps(older, indent=1, ensure_ascii=False) + "\n")
@@ -175,8 +176,8 @@ class AnswersAlone(Board):
         for name in "made_up", "truth":
             self.enter(name)
         self.replay()
-        entries = {json.loads(file.read_text())["about"]["label"]: json.loads(file.read_text())
-                   for file in (self.dir / "board").glob("entries/lga/*/*/entry.json")}
+        entries = {entry["about"]["label"]: entry
+                   for entry in map(read_entry, (self.dir / "board").glob("entries/lga/*/*/entry.json"))}
         for scenario in SMALL["scenarios"]:
             command, = entries["made-up-2"]["phi"][scenario][0]
             for part in command["quality"]["target"].values():

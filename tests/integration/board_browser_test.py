@@ -16,6 +16,7 @@ WIDER = """return [...document.querySelectorAll(".frame")].filter((f) => f.scrol
     .filter((f) => innerWidth < 900 || f.tabIndex !== 0 || !f.querySelector("tbody .pinned"))
     .map((f) => f.getAttribute("aria-label")).concat(
     document.documentElement.scrollWidth > innerWidth ? [document.documentElement.scrollWidth] : [])"""
+INNER = """return [...document.querySelectorAll("main .frame")].filter((f) => f.scrollHeight > f.clientHeight + 1).map((f) => f.getAttribute("aria-label"))"""
 HEADLESS = """return [...document.querySelectorAll("main .frame")].filter((f) => f.querySelector("thead") &&
     getComputedStyle(f.querySelector("thead")).display === "none").map((f) => f.getAttribute("aria-label"))"""
 COLUMN = """return [...document.querySelectorAll("#table1 > .frame tbody tr:not([hidden])")].map((row) => row.cells[arguments[0]].textContent.trim())"""
@@ -75,13 +76,25 @@ class BoardInABrowser(Case):
         self.browser = Browser(self, **looks).open(f"file://{published}")
         self.assertEqual(self.browser.complaints(), [])
 
-    def test_a_page_begins_with_the_best_row_of_each_method(self):
+    def test_a_page_begins_with_the_best_rows_of_each_method(self):
         self.published("q1.html")
         best = self.script(COLUMN, 1)
+        shown = list(zip(best, self.script(COLUMN, 3)))
+        self.assertEqual(len(set(shown)), len(shown))
+        self.assertLessEqual({("LGA", "centroid, untrained"), ("LGA", "heat map")}, set(shown), "the page's subject")
+        ranks = "return [...document.querySelectorAll('#table1 > .frame tbody tr:not([hidden])')].map((row) => [row.cells[0].textContent, row.cells[0].dataset.hidden])"
+        above = hidden = 0  # rows with a rank: those in view, and those that a row says are hidden
+        for rank, said in self.script(ranks):
+            if rank == "–":
+                continue
+            hidden += int(said.split()[1]) if said else 0
+            self.assertLessEqual(int(rank), 1 + above + hidden, "each gap is explained where it stands")
+            above += 1
+        self.assertGreater(hidden, 0)
         self.click(".filter input[type=checkbox]")
         everything = self.script(COLUMN, 1)
         self.assertGreater(len(everything), len(best))
-        self.assertEqual(len(best), len(set(best)))
+        self.assertEqual(self.script("return document.querySelectorAll('[data-hidden]').length"), 0, "nothing is hidden")
         self.assertGreater(everything.count("LGA"), 1)
         self.script("const box = document.querySelector('.filter input'); box.value = 'lga'; box.oninput()")
         self.assertEqual(set(self.script(COLUMN, 1)), {"LGA"}, "a whole word")
@@ -114,11 +127,29 @@ class BoardInABrowser(Case):
         self.browser.until(lambda: self.script("return document.getElementById('panel')?.open"), "a number leads to its episodes")
 
     def test_a_number_shows_scenes_of_its_entry(self):
-        self.published("clutter.html")
+        """Of the scenario that the list says, which the command below has too."""
+        self.published("q1.html")
         loaded = "return [...document.querySelectorAll('#panel .scenes img')].map((i) => i.complete && i.naturalWidth)"
+        chosen = "return [document.querySelector('#outcome option:checked').textContent, document.querySelector('#panel .scenes small')?.textContent ?? '']"
         self.click("#table1 tbody tr:not(.reference) button.rate")
-        self.browser.until(lambda: self.script(loaded) == [516, 516], "two pictures")
+        self.browser.until(lambda: 516 in self.script(loaded), "a picture")
         self.assertIn("Where it does worst", self.browser.text())
+        title, where = self.script(chosen)
+        self.assertTrue(where.startswith(title + ","), where)
+        other = self.script("return [...document.querySelectorAll('#panel [data-scenario]')].map((b) => b.textContent)")
+        self.assertEqual(len(other), 1, "the best episode is of another scenario")
+        self.click("#panel [data-scenario]")
+        self.browser.until(lambda: 516 in self.script(loaded), "another picture")
+        title, where = self.script(chosen)
+        self.assertTrue(where.startswith(title + ",") and other == [f"Where it does best: {title}"], (title, where, other))
+        command = self.script("return document.querySelector('#panel pre').textContent")
+        self.assertIn("--scenarios " + self.script("return document.getElementById('outcome').value"), command)
+        unseen = """const choice = document.getElementById("outcome"), seen = [...document.querySelectorAll("#panel [data-scenario]")];
+            choice.value = [...choice.options].map((one) => one.value).find((id) => !data.entries.some((entry) => entry.scenes.some((scene) => scene.scenario === id)) ||
+                !seen.some((button) => button.dataset.scenario === id) && id !== choice.value);
+            choice.onchange();
+            return document.querySelectorAll("#panel .scenes img").length"""
+        self.assertEqual(self.script(unseen), 0)
 
     def test_a_number_leads_by_the_keyboard_to_the_episodes_of_its_entry(self):
         self.open()
@@ -150,6 +181,7 @@ class BoardInABrowser(Case):
                         self.open(page, width=width, dark=dark)
                         self.browser.shot(f"board-{page}-{width}-{dark}")
                         self.assertEqual(self.script(WIDER), [])
+                        self.assertEqual(self.script(INNER), [], "a box that scrolls downwards in the page")
                         if width >= 900:
                             self.assertEqual(self.script(HEADLESS), [], "tables stay tables")
                         self.assertEqual(self.script(NAMELESS), [])

@@ -99,6 +99,25 @@ class Case(unittest.TestCase):
         self.assertEqual(json_schema.complaints(document, schema), [])
 
 
+def read_entry(file):
+    """A board's entry.json in its long form, which `leaderboard` reads as well."""
+    entry = json.loads(file.read_text())
+    said = entry.pop("said", [])
+
+    def value(one):
+        return said[one] if isinstance(one, int) else one
+
+    def whole(part):
+        if isinstance(part, dict):
+            return {name: one if name == "cost" else whole(one) for name, one in part.items()}
+        return [whole(one) for one in part] if isinstance(part, list) else value(part)
+
+    for scenario, lists in entry["phi"].items():
+        entry["phi"][scenario] = [[{**command, "selection": whole(value(command["selection"])), "quality": value(command["quality"])}
+                                   for command in map(value, one)] for one in lists]
+    return entry
+
+
 class BesideOneRun(Case):
     """Cases whose class plays one run first, which they copy or compare with."""
     run_of_class = ()

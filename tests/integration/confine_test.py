@@ -15,6 +15,16 @@ RUN = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--
 IN_CI = os.environ.get("CI") == "true"
 
 
+READS_A_KEY = """
+import pathlib
+
+
+class Probe:
+    def select(self, command, space, services):
+        (pathlib.Path(__file__).parent / ".ssh/id_rsa").read_text()
+"""
+
+
 class Confinement(Case):
     maxDiff = None
 
@@ -74,6 +84,27 @@ class Confinement(Case):
         self.need("Landlock")
         self.assertEqual([found["read", str(path)] for path in hidden], ["EACCES"] * len(hidden))
         self.assertEqual([found["read", str(path)] for path in readable], ["reached"] * len(readable))
+
+    def test_keys_that_lie_beside_the_plugin(self):
+        """As in a home, where somebody keeps a stranger's plugin: names with a dot are hidden, and the user is warned."""
+        shutil.copytree(FIXTURES / "faulty", self.dir / "mine")
+        hidden = [self.dir / "mine" / name for name in (".ssh/id_rsa", ".netrc")]
+        readable = [self.dir / "mine" / name for name in ("notes.txt", "lib/.libs/data")]
+        for file in hidden + readable:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text("k")
+        self.environment["HOME"] = str(self.dir / "mine")
+        found = self.probes([f"read+path={path}" for path in hidden + readable] + [f"list+path={self.dir}/mine"], plugins="mine")
+        self.need("Landlock")
+        self.assertEqual([found["read", str(path)] for path in hidden], ["EACCES"] * len(hidden))
+        self.assertEqual([found["read", str(path)] for path in readable], ["reached"] * len(readable))
+        self.assertEqual(found["list", f"{self.dir}/mine"], "reached")  # where Python looks for modules
+        (self.dir / "mine/probe.py").write_text(READS_A_KEY)
+        said = self.call("check-plugin", "mine/probe.py:Probe", "--python", "/usr/bin/python3", expect=1)
+        self.assertIn("PermissionError", said.stdout)
+        self.assertIn("this is your home directory", said.stderr)
+        self.environment["HOME"] = str(self.dir)
+        self.assertNotIn("home", self.call("check-plugin", "mine/probe.py:Probe", "--python", "/usr/bin/python3", expect=1).stderr)
 
     def test_files_where_the_data_lies_beside_the_plugin(self):
         """As in a virtual environment that holds lgabench: its interpreter must list the directories above the data."""

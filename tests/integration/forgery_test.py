@@ -13,7 +13,7 @@ import tempfile
 import time
 import unittest
 
-from case import Case, command_line
+from case import Case, command_line, read_entry
 from verify_test import canonical
 
 BOARD = pathlib.Path(__file__).parents[2] / "results/leaderboard"
@@ -76,7 +76,7 @@ class Forgeries(Case):
     def forge(self, change=lambda entry: None, line=lambda line: line, like=None):
         """A new entry, a copy that is changed, with its id, place and the hash of its preset made right."""
         like = like or self.lga
-        entry = json.loads((like / "entry.json").read_text())
+        entry = read_entry(like / "entry.json")
         change(entry)
         preset = {name: value for name, value in entry["preset"].items() if name != "scene_seed"}
         entry["identity"]["preset"] = sha256(canonical(preset).strip())
@@ -148,7 +148,7 @@ class Forgeries(Case):
 
     def test_a_rival_keeps_its_rank(self):
         self.add_line(self.rival, by="Anonymous", passed=False)
-        entry = json.loads((self.rival / "entry.json").read_text())
+        entry = read_entry(self.rival / "entry.json")
         entry["withdrawn"] = {"when": "2026-12-01", "reason": "cheated"}
         (self.rival / "entry.json").write_text(json.dumps(entry, sort_keys=True, indent=1, ensure_ascii=False) + "\n")
         self.assertIn("0 problems", self.check(expect=0))
@@ -157,7 +157,7 @@ class Forgeries(Case):
         self.assertEqual(row[3], "replayed; claimed by Anonymous: a replay differed; claimed: withdrawn")
 
     def test_evidence_that_somebody_adds_changes_no_tier(self):
-        entry = json.loads((self.rival / "entry.json").read_text())
+        entry = read_entry(self.rival / "entry.json")
         entry["evidence"].append({**entry["evidence"][0], "machine": {"processor": "another"}, "by": "B. Reader"})
         (self.rival / "entry.json").write_text(json.dumps(entry, sort_keys=True, indent=1, ensure_ascii=False) + "\n")
         self.add_line(self.rival, by="B. Reader", cells=12)
@@ -353,7 +353,7 @@ class Forgeries(Case):
     def test_a_score_that_nobody_computed(self):
         score = json.loads((next(BOARD.glob("entries/lga/*/words-abstraction/entry.json"))).read_text())["score"]
         file = self.rival / "entry.json"
-        entry = json.loads(file.read_text())
+        entry = read_entry(file)
         self.assertNotIn("score", entry)
         file.write_text(json.dumps({**entry, "score": {**score, "wrong": {}}}, sort_keys=True, indent=1, ensure_ascii=False) + "\n")
         said = self.check(expect=1)

@@ -14,7 +14,7 @@ import tarfile
 import time
 import unittest
 
-from case import BUILD, ENGINE, FIXTURES, Case, command_line
+from case import BUILD, ENGINE, FIXTURES, Case, command_line, read_entry
 from published_test import cheapest_first, replay_one_cell
 from verify_test import canonical, rewrite
 
@@ -463,7 +463,7 @@ class NamesRead(Board):
 
     def test_what_was_changed_is_found(self):
         file = self.entries()[("read", None)]
-        honest = json.loads(file.read_text())
+        honest = read_entry(file)
         for member, value in ("names", "read_robust"), ("reader", "0" * 64), ("segments", "difference"):
             with self.subTest(member):
                 file.write_text(json.dumps({**honest, "identity": {**honest["identity"], member: value}}, indent=1) + "\n")

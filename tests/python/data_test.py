@@ -77,6 +77,18 @@ class Runs(Case):
         (cell / "status.json").unlink()
         self.assertEqual(data.load_run(self.dir / "run").failed, {cell.name: "not played yet"})
 
+    def test_a_run_that_a_stranger_wrote(self):
+        record, before = self.dir / "run/run.json", (self.dir / "run/run.json").read_bytes()
+        for text in b"[]", b"{}", b"1", b"{", b"\xff", b"[" * 100000 + b"]" * 100000, before.replace(b'"cells": [', b'"cells": [1,'):
+            record.write_bytes(text)
+            with self.assertRaisesRegex(ValueError, "run: not a run as lgabench writes it: "):
+                data.load_run(self.dir / "run")
+        record.write_bytes(before)
+        status = next((self.dir / "run/cells").iterdir()) / "status.json"
+        status.write_text('{"state": "ok", "files": 1}')
+        with self.assertRaisesRegex(ValueError, "run: not a run as lgabench writes it: AttributeError"):
+            data.load_run(self.dir / "run")
+
     def test_a_key_that_leads_elsewhere(self):
         record = json.loads((self.dir / "run/run.json").read_text())
         record["cells"].append("../../etc")

@@ -168,6 +168,34 @@ class Evals(Suites):
         self.assertEqual(self.select("--suite", suite, "--answers", "cassette:c.jsonl")["flat"], self.of_the_program(suite)["flat"])
         self.call("run", suite, "--methods", "lga", "--answers", "cassette:c.jsonl", "--demos", 1, "--seeds", 0, "--episodes", 1,
                   "--no-reference", "--engines", "kinematic", "--dry-run", "--out", "run")
+        renamed = log.rename(self.dir / "samplesx.jsonl")
+        named = [*words[:5], renamed, "--model", "made-up", "--cassette", self.dir / "d.jsonl"]
+        self.assertEqual(subprocess.run(named, capture_output=True).returncode, 0)
+
+        def said_of(*changed, text=None):
+            """Of the first line with these changes, or of the text; of a log that a stranger sends."""
+            first = dict(lines[0])
+            first.update(*changed)
+            renamed.write_text(json.dumps(first) + "\n" if text is None else text)
+            done = subprocess.run(named, capture_output=True, text=True)
+            self.assertIn(done.returncode, (2, 3), done.stderr)
+            self.assertNotIn("Traceback", done.stderr)
+            self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+            return done.stderr
+
+        for change in ({"resps": []}, {"resps": [[]]}, {"resps": None}, {"doc": []}, {"doc": None}, {"arguments": []},
+                       {"arguments": {"gen_args_0": {"arg_0": 1, "arg_1": {"max_gen_toks": 1}}}}):
+            self.assertRegex(said_of(change), "^lgabench: .*samplesx.jsonl: no log of lgabench's tasks: (Type|Index|Key|Attribute)Error: ")
+        self.assertIn("RecursionError", said_of(text='{"doc_id": 1, "doc": ' + "[" * 100000 + "]" * 100000 + "}\n"))
+        self.assertIn("line 1: /reply: expected a string", said_of({"resps": [[{"deep": 1}]]}))
+        self.assertIn("expected", said_of(text="\xff\n"))
+        self.assertIn("JSONDecodeError", said_of(text='{"doc_id"\n'))
+
+    def test_seconds_of_a_reply_are_bounded(self):
+        given = replies(evals.questions(self.suite()))
+        for seconds in -1e300, -1, 1e300:
+            with self.assertRaisesRegex(ValueError, "/seconds: expected seconds from 0 to 1e.09"):
+                evals.score([{**given[0], "seconds": seconds}, *given[1:]], SCENES)
 
 
 INSPECT = """

@@ -92,7 +92,7 @@ inline Json replay_of(const Entry& entry, const std::string& by, const std::stri
   const std::string nonce(32, '7');
   Json cells = Json::array();
   int episodes = 0;
-  for (const std::size_t i : chosen_cells(entry, nonce, entry.cells.size())) {
+  for (const std::size_t i : chosen_cells(entry, entry.hash(), nonce, entry.cells.size())) {
     cells.push_back(entry.cells[i].key);
     episodes += entry.cells[i].episodes();
   }

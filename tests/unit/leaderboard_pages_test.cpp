@@ -54,6 +54,114 @@ TEST(Board, AnswersThatNoEntryNamesAreFound) {
   EXPECT_EQ(all(check(board.path).problems), "answers/other.json: no entry is based on it; remove it");
 }
 
+TEST(Board, WhatIsWrongIsSaidBeforeAnythingIsComputed) {
+  const TemporaryDirectory board;
+  write_replayed(board.path, made_entry(small_setting(), "a", .5));
+  build(board.path);
+  const auto complaint = [&](const std::vector<fs::path>& documents) {
+    bool computed = false;
+    const std::string said = message_of<InputError>([&] {
+      build(board.path, documents, [&](const std::string& what, auto, auto, auto) { computed |= what == "computed"; });
+    });
+    EXPECT_FALSE(computed) << said;
+    return said;
+  };
+  write_file(board.path / "document.txt", "<!-- board:q1-board -->");
+  EXPECT_SAYS(complaint({board.path / "document.txt"}), "document.txt: expected <!-- /board --> after");
+  write_file(board.path / "labels.json", "[]");
+  EXPECT_SAYS(complaint({}), "labels.json: /: expected an object");
+  fs::remove(board.path / "labels.json");
+  const std::string scenes = R"({"0123456789abcdef": {"best": {"cell": "0123456789abcdef"}}})";
+  write_file(board.path / "scenes.json", scenes);
+  const std::string said =
+      (board.path / "scenes.json").string() + ": /0123456789abcdef: expected the id of an entry of the board";
+  EXPECT_EQ(complaint({}), said);
+  EXPECT_SAYS(all(check(board.path).problems), said);
+  // An entry that cannot be read is met later: scenes.json is looked at before any.
+  write_file(board.path / entry_directories(board.path).front() / "entry.json", "{}");
+  EXPECT_EQ(complaint({}), said);
+}
+
+TEST(Board, ReadingAndComputingAreToldOf) {
+  const TemporaryDirectory board;
+  for (const char* name : {"a", "b"}) write_replayed(board.path, made_entry(small_setting(), name, .5));
+  std::vector<std::string> said;
+  const Told told = [&](const char* what, std::size_t done, std::size_t of, const char* things) {
+    said.push_back(fmt::format("{} {} of {} {}", what, done, of, things));
+  };
+  const std::vector<std::string> expected{"read 1 of 2 entries", "read 2 of 2 entries", "computed 1 of 1 tables"};
+  build(board.path, {}, told);
+  EXPECT_EQ(said, expected);
+  said.clear();
+  CheckOptions options;
+  options.told = told;
+  EXPECT_EQ(all(check(board.path, options).problems), "");
+  EXPECT_EQ(said, expected);
+}
+
+TEST(Board, ARequestHasNothingOfAnAddThatWasKilled) {
+  const TemporaryDirectory repository;
+  const fs::path board = repository.path / "board";
+  write_replayed(board, made_entry(small_setting(), "a", .5));
+  build(board);
+  git(repository.path, "init -q && git -C " + repository.path.string() + " add -A");
+  git(repository.path, "commit -q -m first");
+  const fs::path before = fs::current_path();
+  fs::current_path(repository.path);
+  const auto problems = [&](const std::string& against) { return all(check(board, {against, false, {}}).problems); };
+  EXPECT_EQ(problems("HEAD"), "");
+  fs::create_directories(board / ".adding/x");
+  write_file(board / ".adding/x/evil.json", "{}");
+  fs::create_directory(board / "answers");
+  write_file(board / "answers" / (sha256("{}") + ".json"), "{}");
+  EXPECT_EQ(problems(""), "") << "as after an add that was killed";
+  const std::string found = problems("HEAD");
+  EXPECT_SAYS(found, ".adding: no file of a board");
+  EXPECT_SAYS(found, sha256("{}") + ".json: no entry is based on it; remove it");
+  fs::current_path(before);
+}
+
+TEST(Board, AnEntryMaySayItsSelectionsInEitherForm) {
+  const TemporaryDirectory repository;
+  const fs::path board = repository.path / "board";
+  Entry entry = made_entry(small_setting(), "a", .5);
+  write_replayed(board, entry);
+  build(board);
+  const fs::path file = board / entry.place() / "entry.json";
+  write_file(file, long_entry_text(entry));  // as it was before 0.5
+  git(repository.path, "init -q && git -C " + repository.path.string() + " add -A");
+  git(repository.path, "commit -q -m first");
+  const fs::path before = fs::current_path();
+  fs::current_path(repository.path);
+  EXPECT_EQ(build(board), std::vector<fs::path>{file});
+  EXPECT_EQ(all(check(board, {"HEAD", false, {}}).problems), "");
+  entry.phi["heart"][0][0]["utterance"] = "Bring me something else.";
+  write_file(file, entry_text(entry));
+  EXPECT_SAYS(all(check(board, {"HEAD", false, {}}).problems), "entry.json: /phi changed since HEAD");
+  fs::current_path(before);
+}
+
+TEST(Board, ARowThatLacksSuitesStandsWhereItsSuccessPutsIt) {
+  const TemporaryDirectory board;
+  for (const auto& [suite, names] : {std::pair<std::string, std::string>{"q1", "abcd"}, {"q2", "abc"}, {"q3", "abe"}}) {
+    Setting setting = small_setting();
+    setting.suite = suite;
+    const double hard = suite == "q2" ? .3 : 0;  // what all lose there
+    for (const char name : names) {
+      const double rate = std::map<char, double>{{'a', .8}, {'b', .35}, {'c', .95}, {'d', .6}, {'e', .05}}[name];
+      write_replayed(board.path, made_entry(setting, std::string(1, name), std::max(.02, rate - hard)));
+    }
+  }
+  build(board.path);
+  const std::string page = read_file(board.path / "index.html");
+  std::string order;
+  std::map<std::size_t, char> places;
+  for (const char name : std::string("abcde"))
+    places[page.find(fmt::format("<th scope=row>method of {}", name))] = name;
+  for (const auto& place : places) order += place.second;
+  EXPECT_EQ(order, "cadbe") << "c and d are not in all suites, and none stands below what is worse";
+}
+
 TEST(Board, ARowSaysWhatTheKernelCouldNotConfine) {
   const TemporaryDirectory board;
   for (const auto& [name, confinement] : {std::pair("a", "Landlock 6, seccomp"),
@@ -118,9 +226,28 @@ TEST(Board, APageBeginsWithTheBestRowOfEachMethod) {
   ASSERT_NE(more, page.npos);
   EXPECT_SAYS(page.substr(more, page.find("</tr>", more) - more), "method of a, loss squared");
   EXPECT_SAYS(index, "loss squared") << "the first page has every row of every suite";
+  EXPECT_SAYS(page, "<dt>fresh</dt><dd>played on scenes that nobody knew") << "words are no code";
   for (const char* words :
        {"not yet replayed", "claimed by", "answers as submitted", "does not mean that they perform equally"})
     EXPECT_SAYS(index, words);
+}
+
+TEST(Board, APageBeginsWithTheBestTrainedRowOfAMethodToo) {
+  const TemporaryDirectory board;
+  for (const auto& [policy, rate] : {std::pair("centroid", .95), {"heat_map", .7}, {"regression", .3}}) {
+    Entry entry = made_entry(small_setting(), "a", rate);
+    entry.identity.row.options["policy"] = policy;
+    write_replayed(board.path, entry);
+  }
+  build(board.path);
+  const std::string page = read_file(board.path / "q1.html"), first = page.substr(0, page.find("</table>"));
+  std::map<std::string, bool> shown;
+  for (const char* policy : {">centroid<", ">heat map<", ">regression<"}) {
+    const std::size_t row = first.rfind("<tr", first.find(policy));
+    ASSERT_NE(row, first.npos) << policy;
+    shown[policy] = first.compare(row, 4, "<tr>") == 0;
+  }
+  EXPECT_EQ(shown, (std::map<std::string, bool>{{">centroid<", true}, {">heat map<", true}, {">regression<", false}}));
 }
 
 TEST(Board, StepsAreOfRowsWithEqualOptionsAndAddUp) {
@@ -317,7 +444,7 @@ TEST(Board, SceneSaysNothingThatItsEntryDoesNot) {
     EXPECT_SAYS(all(check(board.path).problems), problem) << member;
   }
   write_file(board.path / scenes_file, Json{{"0123456789abcdef", good.at(entry.id())}}.dump());
-  EXPECT_SAYS(all(check(board.path).problems), "expected an entry of the board");
+  EXPECT_SAYS(all(check(board.path).problems), "expected the id of an entry of the board");
 }
 
 void replace_in(const fs::path& file, const std::string& old, const std::string& with) {

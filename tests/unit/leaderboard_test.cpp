@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <cmath>
+#include <ctime>
 #include <functional>
 
 #include <lgabench/leaderboard/areas.hpp>
@@ -134,8 +135,7 @@ TEST(LeaderboardEntry, WhatWasChangedIsFound) {
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["identity"]["engine"]["id"] = "a; touch b"; }); }),
               "/identity/engine/id: expected an id");
   EXPECT_SAYS(after([&](auto& path) {
-                json(path,
-                     [](Json& e) { e["phi"]["heart"][0][0]["quality"]["target"]["textures"]["precision"] = 1e300; });
+                json(path, [](Json& e) { e["said"][e["said"].size() - 2]["target"]["textures"]["precision"] = 1e300; });
               }),
               "/precision: expected a number from 0 to 1");
   EXPECT_SAYS(after([&](auto& path) { edit(path / "cells.jsonl", "\"lm_queries\":112.0", "\"lm_queries\":1e+300"); }),
@@ -325,6 +325,90 @@ TEST(LeaderboardEntry, AFreshLineIsWhatItsSuccessesSay) {
   old.erase("successes");
   write_file(board.path / entry.place() / "verifications.jsonl", canonical(old) + "\n");
   EXPECT_SAYS(message_of<InputError>([&] { vouch(board.path, entry.id(), "1"); }), "looked at one arm alone");
+}
+
+// A Selection of a shape that no program writes: whole numbers where names stand, lists of both, an empty list.
+Entry oddly_selecting_entry() {
+  Entry entry = made_entry(small_setting(), "a", .5);
+  Json other = entry.phi["heart"][0][0];
+  other["selection"].update(Json::parse(
+      R"({"cost": {"lm_queries": 3, "lm_seconds": 0.5}, "avoid": {"sets": [{"textures": ["red", "blue"]}], "odd": [1, ["red", "blue"], 7]}})"));
+  entry.phi["heart"].push_back(Json::array({other, entry.phi["heart"][0][0], other}));
+  entry.phi["letter"] = Json::array({Json::array({other}), Json::array()});
+  return entry;
+}
+
+TEST(LeaderboardEntry, SaysEachSelectionOnceAndIsReadInItsLongFormToo) {
+  const TemporaryDirectory board;
+  const Entry entry = oddly_selecting_entry();
+  write_replayed(board.path, entry);
+  const fs::path file = board.path / entry.place() / "entry.json";
+  const Json json = read_json(file);
+  EXPECT_EQ(complaints("entry", json), std::vector<std::string>());
+  EXPECT_EQ(json.at("phi"), Json::parse(R"({"heart": [[3], [8, 3, 8]], "letter": [[8], []]})")) << json.dump(1);
+  for (const std::string& form : {entry_text(entry), long_entry_text(entry)}) {
+    write_file(file, form);
+    const Entry read = read_entries(board.path).front();
+    EXPECT_EQ(read.phi, entry.phi);
+    EXPECT_EQ(read.rest_hash(), entry.rest_hash());
+    EXPECT_TRUE(read.was_replayed()) << "vouched for in either form";
+  }
+  EXPECT_EQ(complaints("entry", read_json(file)), std::vector<std::string>());
+  EXPECT_LT(entry_text(entry).size(), long_entry_text(entry).size());
+  EXPECT_EQ(build(board.path).size(), 5u) << "the board's four files, and the entry in its short form";
+  EXPECT_EQ(read_file(file), entry_text(entry));
+  // Whole numbers of the short form that stand for nothing, or for too much.
+  const auto complaint = [&](const std::string& from, const std::string& to) {
+    std::string text = entry_text(entry);
+    text.replace(text.find(from), from.size(), to);
+    write_file(file, text);
+    return message_of<InputError>([&] { read_entry(board.path, entry.place()); });
+  };
+  EXPECT_SAYS(complaint("    8,", "    99,"), "expected a whole number from 0 to 8, got 99");
+  EXPECT_SAYS(complaint("    8,", "    -1,"), "expected a whole number from 0 to 8, got -1");
+  EXPECT_SAYS(complaint("    8,", "    2,"), "/phi/heart/1/0: expected a member \"utterance\"");  // a quality
+  EXPECT_SAYS(complaint("    8,", "    8.0,"), "expected an object");
+  EXPECT_SAYS(complaint("\n ]\n}", ",\n  []\n ]\n}"), "not as it is written");
+  EXPECT_SAYS(complaint(" \"said\": [", " \"said\": 1, \"no\": ["), "/said: expected an array");
+  Json large = json;
+  large["said"][0] = std::string(1 << 20, 'x');
+  large["said"][1] = Json::parse(R"({"provenance": "rule", "target": [0, 0, 0, 0, 0, 0, 0, 0, 0]})");
+  large["said"][2] = Json::parse(R"({"utterance": "a", "selection": 1, "quality": null})");
+  large["phi"]["heart"] = Json::array({std::vector<int>(2, 2)});
+  write_file(file, large.dump(1) + "\n");
+  EXPECT_SAYS(message_of<InputError>([&] { read_entry(board.path, entry.place()); }),
+              "/said: expected values of at most 8388608 bytes");
+}
+
+TEST(LeaderboardEntry, LinesThatNobodyVouchesForAreFewAndCheap) {
+  const TemporaryDirectory board;
+  const Entry entry = made_entry(large_setting(), "a", .5);
+  write_replayed(board.path, entry);
+  const fs::path file = board.path / entry.place() / "verifications.jsonl";
+  const std::string own = read_file(file);
+  Json line = replay_of(entry, "a stranger", "another");
+  const auto with_claims = [&](std::size_t count) {
+    std::string text = own;
+    for (std::size_t i = 0; i < count; ++i) {
+      line["by"] = fmt::format("stranger {}", i);
+      text += canonical(line) + "\n";
+    }
+    write_file(file, text);
+    const auto begun = std::clock();
+    const std::string problems = fmt::format("{}", fmt::join(check(board.path).problems, "\n"));
+    return std::pair(problems, static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC);
+  };
+  build(board.path);
+  const double without = with_claims(0).second;
+  const auto [problems, seconds] = with_claims(3000);
+  EXPECT_SAYS(problems, "verifications.jsonl: expected at most 100 lines that no maintainer vouches for, got 3000");
+  EXPECT_LT(seconds, without + 1) << "of the processor";
+  const auto [of_some, seconds_of_some] = with_claims(100);
+  EXPECT_EQ(of_some.find("verifications.jsonl"), std::string::npos) << of_some;
+  EXPECT_LT(seconds_of_some, without + 1) << "of the processor";
+  // Whoever verifies or vouches reads them all: a maintainer's line is not shut out.
+  with_claims(200);
+  EXPECT_EQ(vouch(board.path, entry.id(), "201").at("by"), "stranger 199");
 }
 
 TEST(Standings, SharedResamplesSayWhatOnePairsOwnResamplesSay) {

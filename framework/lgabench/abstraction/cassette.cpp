@@ -23,6 +23,13 @@ std::string read_word(const JsonReader& reader) {
   return text;
 }
 
+double read_reply_seconds(const JsonReader& reader) {
+  constexpr double most = 1e9;
+  const double seconds = reader.number();
+  if (!(seconds >= 0 && seconds <= most)) reader.fail(fmt::format("seconds from 0 to {:g}", most));
+  return seconds;
+}
+
 Cassette::Cassette(const fs::path& file) : file_(file) {
   if (fs::exists(file) && !read()) to_stderr("{}: the last line is cut off and was not read\n", file.string());
 }
@@ -38,7 +45,7 @@ bool Cassette::read() {
     reader.only(
         {"key", "model", "request", "reply", "tokens", "seconds", "prompt_tokens", "reply_tokens", "served", "day"});
     const auto tokens = [&](const char* member) { return reader.at(member).integer(0, 1LL << 40); };
-    ChatReply reply{reader.at("reply").string(), tokens("tokens"), reader.at("seconds").number()};
+    ChatReply reply{reader.at("reply").string(), tokens("tokens"), read_reply_seconds(reader.at("seconds"))};
     if (reader.has("prompt_tokens")) reply.prompt_tokens = tokens("prompt_tokens");
     if (reader.has("reply_tokens")) reply.reply_tokens = tokens("reply_tokens");
     if (reader.has("served")) reply.served = read_word(reader.at("served"));

@@ -12,6 +12,9 @@
 
 namespace lgabench {
 
+/// Seconds that a reply took, from a file. @throws InputError for less than 0 or more than 1e9.
+double read_reply_seconds(const JsonReader& reader);
+
 /// What a server said to one request.
 struct ChatReply {
   std::string text;

@@ -26,7 +26,9 @@ Selection read_made(const JsonReader& reader, const Scenario& scenario, const st
   selection.provenance = Provenance::human;
   selection.asked_as = asked_as;
   selection.cost.human_seconds = reader.at("seconds").number();
-  if (selection.cost.human_seconds <= 0) reader.at("seconds").fail("more than 0");
+  constexpr double most = 1e9;
+  if (!(selection.cost.human_seconds > 0 && selection.cost.human_seconds <= most))
+    reader.at("seconds").fail(fmt::format("more than 0, at most {:g}", most));
   return selection;
 }
 

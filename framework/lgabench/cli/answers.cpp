@@ -120,7 +120,7 @@ class GivenReplies : public ChatClient {
                                            {"prompt_tokens", &reply.prompt_tokens},
                                            {"reply_tokens", &reply.reply_tokens}})
         if (reader.has(member)) *tokens = reader.at(member).integer(0, 1LL << 40);
-      if (reader.has("seconds")) reply.seconds = reader.at("seconds").number();
+      if (reader.has("seconds")) reply.seconds = read_reply_seconds(reader.at("seconds"));
       for (const auto& [member, word] : {std::pair("served", &reply.served), {"day", &reply.day}})
         if (reader.has(member)) *word = read_word(reader.at(member));
       keep(reader, id, reply);

@@ -21,6 +21,7 @@
 #include <lgabench/harness/suite.hpp>
 #include <lgabench/harness/worker_pool.hpp>
 #include <lgabench/host/python_method.hpp>
+#include <lgabench/host/reach.hpp>
 #include <lgabench/job/check_report.hpp>
 
 namespace lgabench::cli {
@@ -156,7 +157,12 @@ int check_plugin(const CheckPluginArguments& a) {
   PluginInfo plugin;
   std::size_t printed = 0;
   try {
-    plugin = is_python_method(a.file) ? describe_python(a.file, a.python) : read_plugin(a.file);
+    if (is_python_method(a.file)) {
+      plugin = describe_python(a.file, a.python);
+    } else {
+      plugin = read_plugin(a.file);
+      warn_of_home(fs::absolute(plugin.file).parent_path());
+    }
     if (!a.json)
       to_stdout("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind == "engine" ? "an" : "a", plugin.kind);
     printed = check(plugin, scan_plugins(plugin_directories()), a, report);

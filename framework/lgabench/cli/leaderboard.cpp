@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <ctime>
 #include <optional>
 
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/colour.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/host/python_method.hpp>
 #include <lgabench/leaderboard/add.hpp>
@@ -173,17 +175,53 @@ int vouch(const LeaderboardArguments& a) {
   return ok;
 }
 
+// How far reading and computing are, on stderr: one line on a terminal, else a line every half minute.
+class Steps {
+ public:
+  Steps() = default;
+  ~Steps() {
+    if (terminal_) put(stderr, "\r\x1b[K");
+  }
+  Steps(const Steps&) = delete;
+  Steps& operator=(const Steps&) = delete;
+
+  leaderboard::Told told() {
+    return [this](const char* what, std::size_t done, std::size_t of, const char* things) {
+      const auto now = Clock::now();
+      if (!terminal_ && now - told_ < std::chrono::seconds(30)) return;
+      told_ = now;
+      put(stderr, fmt::format("{}{} {} of {} {}{}", terminal_ ? "\r\x1b[K" : "", what, done, of, things,
+                              terminal_ ? "" : "\n"));
+    };
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool terminal_ = is_terminal(stderr);
+  Clock::time_point told_ = Clock::now();
+};
+
 int check(const LeaderboardArguments& a) {
   leaderboard::CheckOptions options{a.against, a.maintainer, a.documents};
   options.installed = scan_plugins(plugin_directories(a.plugin_path));
-  const leaderboard::Checked checked = leaderboard::check(a.board, options);
+  leaderboard::Checked checked;
+  {
+    Steps steps;
+    options.told = steps.told();
+    checked = leaderboard::check(a.board, options);
+  }
   to_stdout("{} entr{}, {} problem{}\n", checked.entries, checked.entries == 1 ? "y" : "ies", checked.problems.size(),
             checked.problems.size() == 1 ? "" : "s");
   return print_all(checked.problems, "");
 }
 
 int build(const LeaderboardArguments& a) {
-  for (const fs::path& file : leaderboard::build(a.board, a.documents)) to_stdout("{}\n", file.string());
+  std::vector<fs::path> files;
+  {
+    Steps steps;
+    files = leaderboard::build(a.board, a.documents, steps.told());
+  }
+  for (const fs::path& file : files) to_stdout("{}\n", file.string());
   if (a.archive.empty()) return ok;
   if (const int found = check(a); found != ok) return found;
   leaderboard::write_archive(a.board, a.archive);
@@ -236,7 +274,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
       "  add       adds rows of a run; it refuses a run that is not the whole preset on the board's scenes\n"
       "  verify    plays cells of an entry again, confined and without a cache, and records the outcome\n"
       "  vouch     makes a recorded outcome count; until then it is a claim, and the entry has no rank\n"
-      "  build     writes the board's pages and tables\n"
+      "  build     writes the board's pages and tables, and entries of 0.4 and earlier in their shorter form\n"
       "  check     compares these with the entries; it only reads files\n"
       "  withdraw  takes an entry off the board; its files remain\n"
       "  scenes    plays two cells of an entry again and draws an episode of each\n"

@@ -106,9 +106,10 @@ struct Paragraph {
 struct List {
   std::vector<Spans> items;
 };
-/// Names and their values.
+/// Names and their values, shown as code unless they are `prose`.
 struct Facts {
   std::vector<std::pair<std::string, std::string>> items;
+  bool prose = false;
 };
 /// Charts side by side; those with a `file` lie in RUN/figures as well.
 struct Charts {

@@ -214,7 +214,8 @@ std::string block_html(const Block& block) {
   }
   if (const auto* facts = std::get_if<Facts>(&block.content)) {
     for (const auto& [name, value] : facts->items)
-      text += fmt::format("<dt>{}</dt><dd><code>{}</code></dd>", shown(name), escaped(value));
+      text += fmt::format(facts->prose ? "<dt>{}</dt><dd>{}</dd>" : "<dt>{}</dt><dd><code>{}</code></dd>", shown(name),
+                          escaped(value));
     text = "<dl>" + text + "</dl>\n";
   }
   if (const auto* grid = std::get_if<Grid>(&block.content)) text = grid_html(*grid);

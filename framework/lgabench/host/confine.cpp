@@ -145,6 +145,15 @@ Confinement::Confinement(const Reach& reach) : network_(reach.network) {
     const fs::path real = fs::canonical(path, not_there);
     if (!not_there) rules.add_visible(real, hidden, unread);
   }
+  for (const fs::path& path : reach.folders) {
+    const fs::path real = fs::canonical(path, not_there);
+    if (not_there) continue;
+    std::vector<fs::path> unread_here = unread;
+    std::error_code unreadable;
+    for (const auto& entry : fs::directory_iterator(real, unreadable))
+      if (entry.path().filename().string().front() == '.') unread_here.push_back(entry.path());
+    rules.add_visible(real, hidden, unread_here);
+  }
   for (const fs::path& path : reach.writes) rules.add(path, ~devices_and_sockets);
   rules_ = std::move(rules.file);
 }

@@ -14,6 +14,8 @@ struct Reach {
   std::vector<std::filesystem::path> hidden;  // neither, though they lie below one of `reads`
   bool network = false;  // sockets of IP, and what looking up a name and checking a certificate read
   std::vector<std::filesystem::path> unread{};  // as `hidden`, but that they are there, and their names, may be seen
+  // Directories as `reads`, but names in them that begin with a dot are as `unread`: keys and settings lie in a home.
+  std::vector<std::filesystem::path> folders{};
 };
 
 /// Limits that are prepared before a process is forked, and applied in it. A part that the kernel does not support is

@@ -64,7 +64,7 @@ Reach reach_of(const HostJob& job) {
   const fs::path data = data_directory();
   Reach reach = system_reach();
   reach.network = job.plugin.asks == "network";
-  reach.reads.push_back(job.plugin.file.parent_path());
+  reach.folders.push_back(job.plugin.file.parent_path());
   reach.writes.push_back(job.scratch);
   reach.hidden = job.hidden;
   if (!job.plugin.python.is_null()) add_python(reach, job.plugin.python);

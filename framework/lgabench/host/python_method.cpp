@@ -170,7 +170,9 @@ bool is_python_method(const std::string& word) {
 }
 
 PluginInfo describe_python(const std::string& written, const std::string& interpreter) {
-  return describe_python(written, interpreter, {}, "");
+  PluginInfo plugin = describe_python(written, interpreter, {}, "");
+  warn_of_home(plugin.file.parent_path());
+  return plugin;
 }
 
 PluginInfo describe_python(const std::string& written, const std::string& interpreter, const fs::path& site,
@@ -234,6 +236,7 @@ Catalogue plugins_at(const std::vector<fs::path>& paths, const std::string& inte
   in_python.erase(std::remove_if(in_python.begin(), in_python.end(), is_other), in_python.end());
   const std::vector<fs::path> directories = plugin_directories(others);
   Catalogue catalogue = scan_plugins(directories);
+  for (const fs::path& one : others) warn_of_home(fs::is_directory(one) ? one : fs::absolute(one).parent_path());
   for (const fs::path& directory : directories)
     if (is_site_packages(directory)) add_installed_methods(directory, interpreter, catalogue);
   for (const fs::path& path : in_python) add_once(describe_python(path.string(), interpreter), catalogue);

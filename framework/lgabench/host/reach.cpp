@@ -1,8 +1,10 @@
 #include <lgabench/host/reach.hpp>
 
+#include <cstdlib>
 #include <string>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/terminal.hpp>
 
 namespace lgabench {
 
@@ -17,6 +19,17 @@ Reach system_reach() {
 }
 
 fs::path python_package() { return fs::canonical(data_directory() / "python"); }
+
+void warn_of_home(const fs::path& folder) {
+  const char* home = std::getenv("HOME");
+  std::error_code not_there;
+  if (home == nullptr || !fs::equivalent(folder, home, not_there)) return;
+  to_stderr(
+      "{}: this is your home directory: a plugin in it can read all that lies there and has no dot before its name; "
+      "put "
+      "it in a folder of its own (docs/trust.md)\n",
+      folder.string());
+}
 
 void add_python(Reach& reach, const Json& python) {
   reach.reads.push_back(python_package());

@@ -14,6 +14,9 @@ Reach system_reach();
 /// lgabench_method, which comes with lgabench's data: no installed interpreter has it.
 std::filesystem::path python_package();
 
+/// Says on stderr that a plugin in that folder can read the user's files, where it is the home directory.
+void warn_of_home(const std::filesystem::path& folder);
+
 /// Adds the package, the interpreter and where it finds others: members of PluginInfo::python.
 void add_python(Reach& reach, const Json& python);
 

@@ -12,6 +12,7 @@
 #include <lgabench/leaderboard/pages.hpp>
 #include <lgabench/leaderboard/recompute.hpp>
 #include <lgabench/leaderboard/revision.hpp>
+#include <lgabench/leaderboard/said.hpp>
 #include <lgabench/leaderboard/scenes.hpp>
 
 namespace lgabench::leaderboard {
@@ -21,9 +22,10 @@ bool begins_with(const Json& list, const Json& first) {
   return list.size() >= first.size() && std::equal(first.begin(), first.end(), list.begin());
 }
 
-// entry.json may gain evidence and be withdrawn; nothing else in it changes or appears.
-std::string changed_entry(const std::string& before, const std::string& now) {
-  const Json there = json_or_null(before), here = json_or_null(now);
+// entry.json may gain evidence, be withdrawn, and say its Selections in its other form; nothing else in it changes or
+// appears.
+std::string changed_entry(const fs::path& file, const std::string& before, const std::string& now) {
+  const Json there = expanded(json_or_null(before), file.string()), here = expanded(json_or_null(now), file.string());
   if (!there.is_object() || !here.is_object()) return "is no JSON object any more";
   for (const auto& [member, value] : there.items()) {
     const Json other = here.value(member, Json());
@@ -39,7 +41,7 @@ std::string changed(const fs::path& file, const std::string& before) {
   if (!fs::exists(fs::symlink_status(file))) return "is gone (leaderboard withdraw keeps the record)";
   const std::string now = read_file(file, Links::refused);
   if (now == before) return "";
-  if (file.filename() == "entry.json") return changed_entry(before, now);
+  if (file.filename() == "entry.json") return changed_entry(file, before, now);
   if (file.filename() == "verifications.jsonl") return now.rfind(before, 0) == 0 ? "" : "a verification changed";
   return "an outcome or a cell changed";
 }
@@ -91,9 +93,10 @@ void expect_answers(const fs::path& board, const Entry& entry, Checked& checked)
         fmt::format("{}: {} is not there, or not what its name says", entry.place().string(), file.string()));
 }
 
-// One that is what its name says may be of an `add` that was killed.
-void expect_no_other_answers(const fs::path& board, const std::vector<Entry>& entries, Checked& checked) {
-  const bool was_killed = fs::exists(board / adding_directory);
+// One that is what its name says may be of an `add` that was killed, which a request has not.
+void expect_no_other_answers(const fs::path& board, const std::vector<Entry>& entries, bool is_request,
+                             Checked& checked) {
+  const bool was_killed = !is_request && fs::exists(board / adding_directory);
   for (const fs::path& file : other_answers(board, entries)) {
     const std::string ending = file.extension();
     if (was_killed && fs::symlink_status(board / file).type() == fs::file_type::regular &&
@@ -114,10 +117,10 @@ std::string substance(const fs::path& file, const std::string& bytes) {
   return between(bytes, "<main>", "</main>") + between(bytes, "id=\"data\">", "</script>");
 }
 
-void expect_current(const fs::path& board, const std::vector<Entry>& entries, const std::vector<fs::path>& documents,
+void expect_current(const fs::path& board, const std::vector<Entry>& entries, const CheckOptions& options,
                     Checked& checked) {
   try {
-    for (const auto& [file, bytes] : made_files(board, entries, documents))
+    for (const auto& [file, bytes] : made_files(board, entries, options.documents, options.told))
       if (!fs::exists(file) || substance(file, read_file(file)) != substance(file, bytes))
         checked.problems.push_back(
             fmt::format("{}: not what lgabench leaderboard build makes of the entries", file.string()));
@@ -148,9 +151,10 @@ void expect_frames(const fs::path& board, const std::vector<Entry>& entries, con
 }
 
 // Nothing lies beside what a board has: git, a web server or a browser obeys some names.
-void expect_nothing_else(const fs::path& board, const std::vector<Entry>& entries, Checked& checked) {
+void expect_nothing_else(const fs::path& board, const std::vector<Entry>& entries, bool is_request, Checked& checked) {
   std::set<std::string> files{"README.md", "index.html", "leaderboard.csv"};
-  const std::set<std::string> directories{"entries", "answers", scenes_directory, adding_directory};
+  std::set<std::string> directories{"entries", "answers", scenes_directory};
+  if (!is_request) directories.insert(adding_directory);
   files.insert(maintainers_files.begin(), maintainers_files.end());
   for (const Entry& entry : entries) files.insert(entry.setting.suite + ".html");
   const auto expect = [&](const fs::directory_entry& item, bool known) {
@@ -207,34 +211,37 @@ void expect_vouched(const std::vector<Entry>& entries, const Vouched& vouched, C
 
 Checked check(const fs::path& board, const CheckOptions& options) {
   Checked checked;
+  const bool is_request = !options.against.empty();
   Files before;
-  if (!options.against.empty()) before = files_at(options.against, board);
+  if (is_request) before = files_at(options.against, board);
   std::vector<Entry> entries;
   try {
     const Vouched vouched = read_vouched(board);
-    for (const fs::path& directory : entry_directories(board)) {
+    const std::vector<fs::path> directories = entry_directories(board);
+    for (const fs::path& directory : directories) {
       ++checked.entries;
       try {
-        entries.push_back(read_entry(board, directory, vouched));
+        entries.push_back(read_entry(board, directory, &vouched));
         expect_answers(board, entries.back(), checked);
         if (options.installed) expect_installed(entries.back(), *options.installed, checked);
       } catch (const InputError& e) {
         checked.problems.emplace_back(e.what());
       }
+      if (options.told) options.told("read", checked.entries, directories.size(), "entries");
     }
     expect_vouched(entries, vouched, checked);
     if (entries.size() == checked.entries) {
-      expect_no_other_answers(board, entries, checked);
+      expect_no_other_answers(board, entries, is_request, checked);
       for (std::string& problem : problems_of_scenes(board, read_scenes(board, entries)))
         checked.problems.push_back(std::move(problem));
     }
   } catch (const InputError& e) {  // something else than directories, or vouched.json is not as it should be
     checked.problems.emplace_back(e.what());
   }
-  expect_nothing_else(board, entries, checked);
+  expect_nothing_else(board, entries, is_request, checked);
   expect_same_scenes(entries, checked);
-  if (checked.problems.empty()) expect_current(board, entries, options.documents, checked);
-  if (options.against.empty()) return checked;
+  if (checked.problems.empty()) expect_current(board, entries, options, checked);
+  if (!is_request) return checked;
   compare_with(before, board, options, checked);
   if (checked.problems.empty()) expect_frames(board, entries, before, checked);
   return checked;

@@ -28,14 +28,16 @@ struct CheckOptions {
   bool maintainer = false;  // who asks may change maintainers_files
   std::vector<fs::path> documents;
   std::optional<Catalogue> installed{};  // what entries that are not yet replayed must fit; none: it is not asked
+  Told told{};
 };
 
 /// Schema, identity and completeness of every entry; that entries of one table played the same scenes; that cassettes
 /// are there, and pictures of scenes those that are listed; that lines and entries that are vouched for are those that
 /// were; that a preset and engine that an entry names are the installed ones, unless it was replayed; that the pages
 /// and the tables in documents are those of the entries; that nothing else lies in the board; and, with a revision,
-/// that the directories of its entries differ by appended verifications, evidence and a withdrawal at most, and the
-/// maintainers' files not at all, and that pages are around their tables as they were or as this build writes them.
+/// that the directories of its entries differ by appended verifications, evidence and a withdrawal at most (in either
+/// form of entry.json), and the maintainers' files not at all, that pages are around their tables as they were or as
+/// this build writes them, and that nothing is left of an `add` that was killed.
 /// Keeps on after a problem. @throws InputError as files_at().
 Checked check(const fs::path& board, const CheckOptions& options = {});
 

@@ -10,6 +10,7 @@
 #include <set>
 
 #include <lgabench/core/hash.hpp>
+#include <lgabench/leaderboard/said.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/plugin/loader.hpp>
 
@@ -178,10 +179,14 @@ std::vector<fs::path> entry_directories(const fs::path& board) {
   return all;
 }
 
-std::vector<Entry> read_entries(const fs::path& board) {
+std::vector<Entry> read_entries(const fs::path& board, const Told& told) {
   std::vector<Entry> all;
   const Vouched vouched = read_vouched(board);
-  for (const fs::path& directory : entry_directories(board)) all.push_back(read_entry(board, directory, vouched));
+  const std::vector<fs::path> directories = entry_directories(board);
+  for (const fs::path& directory : directories) {
+    all.push_back(read_entry(board, directory, &vouched));
+    if (told) told("read", all.size(), directories.size(), "entries");
+  }
   return all;
 }
 
@@ -197,7 +202,9 @@ std::vector<fs::path> other_answers(const fs::path& board, const std::vector<Ent
   return others;
 }
 
-std::string entry_text(const Entry& entry) { return json_of(entry).dump(1) + "\n"; }
+std::string entry_text(const Entry& entry) { return text_of_entry(shortened(json_of(entry))); }
+
+std::string long_entry_text(const Entry& entry) { return text_of_entry(json_of(entry)); }
 
 std::string cells_text(const Entry& entry) {
   std::string text;
@@ -261,9 +268,9 @@ void withdraw(const fs::path& board, const std::string& name, const std::string&
   write_entry(board, entry);
 }
 
-std::vector<std::size_t> chosen_cells(const Entry& entry, const std::string& nonce, std::size_t cells) {
+std::vector<std::size_t> chosen_cells(const Entry& entry, const std::string& hash, const std::string& nonce,
+                                      std::size_t cells) {
   std::vector<std::pair<std::string, std::size_t>> order;
-  const std::string hash = entry.hash();
   for (std::size_t i = 0; i < entry.cells.size(); ++i) order.emplace_back(sha256(hash + nonce + entry.cells[i].key), i);
   std::sort(order.begin(), order.end());
   order.resize(std::min(cells, order.size()));

@@ -1,6 +1,7 @@
 // An entry of the leaderboard: one row of a table, as files (docs/formats): entries/METHOD/ID/SUITE-PRESET/.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -55,6 +56,9 @@ Json to_json(const PlayedCell& cell);
 /// How many cells a replay plays, unless the entry has fewer: 30 find 10 % falsified ones in 96 of 100 cases.
 constexpr std::size_t enough_cells = 30;
 
+/// Told how many of so many steps are done, in words: "read 3 of 352 entries".
+using Told = std::function<void(const char* what, std::size_t done, std::size_t of, const char* things)>;
+
 /// How far an entry was checked.
 enum class Tier { recomputed, replayed, reproduced };
 std::string to_string(Tier tier);
@@ -84,7 +88,7 @@ struct Entry {
   /// Of the machine that computed it first.
   std::string processor() const { return evidence.front().at("machine").at("processor"); }
   /// Whether the maintainers vouch for the line.
-  bool counts(const Json& line) const { return vouched.count(line_hash(line)) > 0; }
+  bool counts(const Json& line) const { return !vouched.empty() && vouched.count(line_hash(line)) > 0; }
   bool is_withdrawn() const { return !withdrawn.is_null() && counts(withdrawn); }
   /// Whether a method's answers are a file that its authors wrote: whoever gave them cannot be asked again.
   bool has_answers_as_submitted() const;
@@ -104,13 +108,16 @@ struct Entry {
 Tier tier_of(const Entry& entry, const Json& line);
 
 /// Reads and checks an entry's directory: schema, identity, completeness, letters. `vouched` says which of its lines
-/// count. @throws InputError with the file and the first place that is not as docs/formats says.
-Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched& vouched = {});
+/// count; without it none does. @throws InputError with the file and the first place that is not as docs/formats says,
+/// and, with `vouched`, for more than most_claims lines that nobody vouches for.
+Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched* vouched = nullptr);
+/// Of an entry's verifications: anybody may append some, and each is checked.
+constexpr std::size_t most_claims = 100;
 /// Directories of all entries, sorted, relative to the board. @throws InputError for what is neither file nor
 /// directory.
 std::vector<fs::path> entry_directories(const fs::path& board);
 /// All entries, with what the board's vouched.json says. @throws InputError as read_entry().
-std::vector<Entry> read_entries(const fs::path& board);
+std::vector<Entry> read_entries(const fs::path& board, const Told& told = {});
 
 /// What lies in answers/ and no entry names, or is a link, relative to the board: nobody would ever read it.
 std::vector<fs::path> other_answers(const fs::path& board, const std::vector<Entry>& entries);
@@ -118,8 +125,9 @@ std::vector<fs::path> other_answers(const fs::path& board, const std::vector<Ent
 /// What authors say of their rows, from a file. @throws InputError for what is not as docs/formats says.
 Json read_about(const fs::path& file);
 
-/// entry.json and cells.jsonl, as text.
+/// entry.json and cells.jsonl, as text. Entries of 0.4 and earlier have the long form (said.hpp).
 std::string entry_text(const Entry& entry);
+std::string long_entry_text(const Entry& entry);
 std::string cells_text(const Entry& entry);
 /// Where entries are written before they get their place in a board.
 inline constexpr const char* adding_directory = ".adding";
@@ -148,7 +156,8 @@ fs::path find_entry(const fs::path& board, const std::string& name);
 void withdraw(const fs::path& board, const std::string& name, const std::string& reason, const std::string& when);
 
 /// The `cells` places that a nonce (32 hexadecimal digits) chooses: those with the smallest SHA-256 of the entry's
-/// hash, the nonce and the cell's key.
-std::vector<std::size_t> chosen_cells(const Entry& entry, const std::string& nonce, std::size_t cells);
+/// hash, the nonce and the cell's key. `hash`: the entry's, which takes longer to make than the choice.
+std::vector<std::size_t> chosen_cells(const Entry& entry, const std::string& hash, const std::string& nonce,
+                                      std::size_t cells);
 
 }  // namespace lgabench::leaderboard

@@ -1,6 +1,7 @@
 // An entry's files, read and checked into a value: what somebody sent is untrusted.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <ctime>
 
@@ -8,16 +9,15 @@
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/leaderboard/answer_score.hpp>
 #include <lgabench/leaderboard/labels.hpp>
+#include <lgabench/leaderboard/said.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/record/layout.hpp>
 
 namespace lgabench::leaderboard {
 namespace {
 
-constexpr std::uintmax_t most_bytes = 16 << 20;
-
-// Reads a file of an entry; the largest published one has 100 kB.
-std::string read_bounded(const fs::path& file) { return read_file(file, Links::refused, most_bytes); }
+// Reads a file of an entry's cells or verifications; the largest published one has 130 kB.
+std::string read_bounded(const fs::path& file) { return read_file(file, Links::refused, 16 << 20); }
 
 void expect_sha256(const JsonReader& reader) {
   const std::string text = reader.string();
@@ -183,7 +183,7 @@ std::vector<std::string> read_failures(const JsonReader& reader) {
 
 }  // namespace
 
-Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched& vouched) {
+Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched* vouched) {
   const fs::path path = board / directory;
   expect_plain_entries(path);
   for (const auto& file : fs::directory_iterator(path))
@@ -192,8 +192,8 @@ Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched
       throw InputError(
           fmt::format("{}: expected only entry.json, cells.jsonl and verifications.jsonl here", file.path().string()));
   const fs::path file = path / "entry.json";
-  const std::string bytes = read_bounded(file);
-  const Json json = parse_json(bytes, file.string());
+  const std::string bytes = read_file(file, Links::refused, most_entry_bytes);
+  const Json json = expanded(parse_json(bytes, file.string()), file.string());
   const JsonReader reader(json, file.string());
   reader.only({"id", "identity", "preset", "about", "failures", "phi", "score", "evidence", "withdrawn"});
   Entry entry;
@@ -222,7 +222,8 @@ Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched
     for (const char* text : {"when", "reason"}) reader.at("withdrawn").at(text).string();
     entry.withdrawn = reader.at("withdrawn").json();
   }
-  if (entry_text(entry) != bytes) throw InputError(fmt::format("{}: not as it is written", file.string()));
+  if (entry_text(entry) != bytes && long_entry_text(entry) != bytes)
+    throw InputError(fmt::format("{}: not as it is written", file.string()));
 
   const fs::path lines = path / "cells.jsonl";
   int number = 0;
@@ -239,19 +240,26 @@ Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched
     throw InputError(fmt::format("{}: expected {} cells, got {}; the next is {}", lines.string(), places.size(),
                                  entry.cells.size(), places[entry.cells.size()].text()));
   if (text != cells_text(entry)) throw InputError(fmt::format("{}: not as it is written", lines.string()));
-  const fs::path checks = path / "verifications.jsonl";
-  number = 0;
-  if (fs::exists(checks))
-    for (const Json& line : parse_json_lines(read_bounded(checks), checks.string())) {
-      const JsonReader at(line, fmt::format("{}: line {}", checks.string(), ++number));
-      expect_verification(at, entry);
-      entry.verifications.push_back(line);
-    }
   const std::string hash = entry.hash();
-  const auto own = vouched.lines.find(hash);
-  const auto rest = vouched.entries.find(hash);
-  if (own != vouched.lines.end() && rest != vouched.entries.end() && rest->second == entry.rest_hash())
-    entry.vouched = own->second;
+  if (vouched != nullptr) {
+    const auto own = vouched->lines.find(hash);
+    const auto rest = vouched->entries.find(hash);
+    if (own != vouched->lines.end() && rest != vouched->entries.end() && rest->second == entry.rest_hash())
+      entry.vouched = own->second;
+  }
+  const fs::path checks = path / "verifications.jsonl";
+  if (!fs::exists(checks)) return entry;
+  const std::vector<Json> verifications = parse_json_lines(read_bounded(checks), checks.string());
+  const auto claims = std::count_if(verifications.begin(), verifications.end(),
+                                    [&entry](const Json& line) { return !entry.counts(line); });
+  if (vouched != nullptr && static_cast<std::size_t>(claims) > most_claims)
+    throw InputError(fmt::format("{}: expected at most {} lines that no maintainer vouches for, got {}",
+                                 checks.string(), most_claims, claims));
+  number = 0;
+  for (const Json& line : verifications) {
+    expect_verification(JsonReader(line, fmt::format("{}: line {}", checks.string(), ++number)), entry, hash);
+    entry.verifications.push_back(line);
+  }
   return entry;
 }
 

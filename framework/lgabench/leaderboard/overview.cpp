@@ -39,8 +39,27 @@ using Row = std::tuple<std::string, std::string, std::string>;
 struct Numbers {
   bool reference = false;
   std::map<std::size_t, TableCell> cells;  // by column
-  std::vector<double> scores;
+  std::map<std::size_t, double> scores;
+
+  double mean() const {
+    double sum = 0;
+    for (const auto& score : scores) sum += score.second;
+    return sum / static_cast<double>(scores.size());
+  }
 };
+
+// Success in each column, on average over the rows that are in all of them; over all rows where none is.
+std::vector<double> typical_success(const std::map<Row, Numbers>& rows, std::size_t columns) {
+  const bool some_are_whole =
+      std::any_of(rows.begin(), rows.end(), [&](const auto& row) { return row.second.scores.size() == columns; });
+  std::vector<std::vector<double>> by_column(columns);
+  for (const auto& [row, numbers] : rows)
+    if (!some_are_whole || numbers.scores.size() == columns)
+      for (const auto& [column, score] : numbers.scores) by_column[column].push_back(score);
+  std::vector<double> typical;
+  for (const std::vector<double>& scores : by_column) typical.push_back(report::mean(scores));
+  return typical;
+}
 
 // A suite's number: the best of the row's, which leads to its episodes.
 TableCell number_cell(const Standing& s, const std::string& suite, std::size_t row) {
@@ -75,7 +94,7 @@ std::optional<Grid> overview_grid(const Suites& suites, Ranking ranking) {
           Numbers& row = rows[{s.label, s.policy, answers_label(*s.entry)}];
           row.reference = s.is_reference();
           if (row.cells.emplace(columns, number_cell(s, suite, first_row + table.row(s))).second)
-            row.scores.push_back(s.score);
+            row.scores[columns] = s.score;
         }
         ++columns;
       }
@@ -85,21 +104,26 @@ std::optional<Grid> overview_grid(const Suites& suites, Ranking ranking) {
   if (columns == 0) return std::nullopt;
   grid.heads.emplace_back("mean");
   grid.align = "lll" + std::string(columns + 1, 'r');
-  // Rows that are in all suites by their mean, then those in fewer.
-  std::vector<std::pair<Row, Numbers>> sorted(rows.begin(), rows.end());
-  const auto mean = [](const Numbers& row) { return report::mean(row.scores); };
-  std::stable_sort(sorted.begin(), sorted.end(), [&](const auto& one, const auto& other) {
-    return std::pair(one.second.scores.size(), mean(one.second)) >
-           std::pair(other.second.scores.size(), mean(other.second));
-  });
-  for (auto& [row, numbers] : sorted) {
+  // By success beside the typical one of the same suites: of rows in all suites, that is by their mean.
+  const std::vector<double> typical = typical_success(rows, columns);
+  const auto beside_typical = [&typical](const Numbers& row) {
+    double sum = 0;
+    for (const auto& [column, score] : row.scores) sum += score - typical[column];
+    return sum / static_cast<double>(row.scores.size());
+  };
+  std::vector<std::pair<double, std::pair<Row, Numbers>>> sorted;
+  for (auto& row : rows) sorted.emplace_back(beside_typical(row.second), row);
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& one, const auto& other) { return one.first > other.first; });
+  for (const auto& placed : sorted) {
+    const auto& [row, numbers] = placed.second;
     const auto& [label, policy, answers] = row;
     Grid::Row line{{}, {Span(label), Span(policy), Span(answers)}, numbers.reference};
     for (std::size_t k = 0; k < columns; ++k) {
       const auto own = numbers.cells.find(k);
       line.cells.push_back(own == numbers.cells.end() ? TableCell(Span::number("–")) : own->second);
     }
-    line.cells.emplace_back(Span::number(numbers.scores.size() == columns ? fixed(mean(numbers)) : "–"));
+    line.cells.emplace_back(Span::number(numbers.scores.size() == columns ? fixed(numbers.mean()) : "–"));
     grid.rows.push_back(std::move(line));
   }
   return grid;
@@ -134,7 +158,8 @@ Document overview(const Suites& suites) {
     Section section{section_of(ranking), capital(to_string(ranking))};
     section.add<Paragraph>(
         reading, {{words_of(ranking) + " The mean is that of rows which are in every suite of the table; a suite of "
-                                       "perturbed scenes enters with its area."}});
+                                       "perturbed scenes enters with its area. A row that lacks suites stands where "
+                                       "its success in the others puts it."}});
     section.add<Grid>(reading, std::move(*grid));
     document.sections.push_back(std::move(section));
   }

@@ -124,28 +124,43 @@ std::string csv_of(const Suites& suites) {
   return text;
 }
 
-// A document whose text between <!-- board:SUITE-PRESET --> and <!-- /board --> is that preset's tables, and all
-// suites' steps between <!-- board:steps --> and that.
-std::string with_tables(const fs::path& file, const fs::path& board, const Suites& suites) {
+// A document: its text up to the end of each opening marker, with the marker's name, and the rest of it.
+struct Marked {
+  std::vector<std::pair<std::string, std::string>> parts;
+  std::string rest;
+};
+
+Marked read_marked(const fs::path& file) {
   const std::string text = read_file(file), open = "<!-- board:", close = "<!-- /board -->";
-  std::string out;
+  Marked marked;
   std::size_t at = 0;
   for (std::size_t begin = 0; (begin = text.find(open, at)) != text.npos;) {
     const std::size_t end = text.find(close, begin), inside = text.find(" -->", begin) + 4;
     if (end == text.npos || inside > end || text.find(open, begin + 1) < end)
       throw InputError(fmt::format("{}: expected {} after {}SUITE-PRESET -->", file.string(), close, open));
-    const std::string name = text.substr(begin + open.size(), inside - 4 - begin - open.size());
+    marked.parts.emplace_back(text.substr(at, inside - at),
+                              text.substr(begin + open.size(), inside - 4 - begin - open.size()));
+    at = end;
+  }
+  if (at == 0) throw InputError(fmt::format("{}: expected {}SUITE-PRESET --> and {}", file.string(), open, close));
+  marked.rest = text.substr(at);
+  return marked;
+}
+
+// The document whose text between <!-- board:SUITE-PRESET --> and <!-- /board --> is that preset's tables, and all
+// suites' steps between <!-- board:steps --> and that.
+std::string with_tables(const Marked& marked, const fs::path& board, const Suites& suites) {
+  std::string out;
+  for (const auto& [text, name] : marked.parts) {
     Section section;
     if (name == "steps") section.add<Grid>(reading, all_steps_grid(suites));
     for (const auto& suite : suites)
       for (const NamedTable& table : suite.second)
         if (table.setting.name() == name && section.blocks.empty()) add_results(section, table, board);
     if (section.blocks.empty()) section.add<Paragraph>(reading, {{fmt::format("No entry of {} yet.", name)}});
-    out += text.substr(at, inside - at) + '\n' + markdown(section) + '\n';
-    at = end;
+    out += text + '\n' + markdown(section) + '\n';
   }
-  if (at == 0) throw InputError(fmt::format("{}: expected {}SUITE-PRESET --> and {}", file.string(), open, close));
-  return out + text.substr(at);
+  return out + marked.rest;
 }
 
 // Files, and of folders the Markdown with markers in it.
@@ -167,14 +182,17 @@ bool ranks_entries(const NamedTable& table) {
 }
 
 // In the order in which a reader needs them, then by name; suites for diagnosis, without a rank, come last.
-Suites suites_of(const std::vector<Entry>& entries, const Labels& labels, const Tracks& tracks) {
+Suites suites_of(const std::vector<Entry>& entries, const Labels& labels, const Tracks& tracks, const Told& told) {
   constexpr std::array order{"q1",     "clutter", "q2",    "q3",        "few_members", "many_commands",
                              "mobile", "fetch",   "drawn", "robustness"};
   std::map<std::pair<std::ptrdiff_t, std::string>, std::vector<NamedTable>> by_place;
-  for (const auto& table : tables(entries)) {
+  const auto all = tables(entries);
+  std::size_t done = 0;
+  for (const auto& table : all) {
     const std::string& suite = table.front()->setting.suite;
     for (NamedTable& ranking : named_tables(table, labels, tracks))
       by_place[{std::find(order.begin(), order.end(), suite) - order.begin(), suite}].push_back(std::move(ranking));
+    if (told) told("computed", ++done, all.size(), "tables");
   }
   Suites suites;
   for (auto& [place, named] : by_place) {
@@ -191,11 +209,14 @@ Suites suites_of(const std::vector<Entry>& entries, const Labels& labels, const 
 }  // namespace
 
 std::map<fs::path, std::string> made_files(const fs::path& board, const std::vector<Entry>& entries,
-                                           const std::vector<fs::path>& documents) {
+                                           const std::vector<fs::path>& documents, const Told& told) {
   const Tracks tracks = read_tracks(board);
   for (const Entry& entry : entries) expect_arms(board, tracks, entry.setting);
-  const Suites suites = suites_of(entries, read_labels(board), tracks);
   const BoardScenes scenes = read_scenes(board, entries);
+  const Labels labels = read_labels(board);
+  std::map<fs::path, Marked> marked;
+  for (const fs::path& document : documents_in(documents)) marked[document] = read_marked(document);
+  const Suites suites = suites_of(entries, labels, tracks, told);
   std::map<fs::path, std::string> files;
   files[board / "README.md"] = markdown(readme(suites));
   files[board / "index.html"] = html(overview(suites), overview_data(suites), "leaderboard.js");
@@ -203,15 +224,17 @@ std::map<fs::path, std::string> made_files(const fs::path& board, const std::vec
   for (const auto& [suite, tables] : suites)
     files[board / (suite + ".html")] =
         html(suite_document(suite, tables), suite_data(tables, scenes), "leaderboard.js");
-  for (const fs::path& document : documents_in(documents))
-    files[document] = with_tables(document, fs::relative(board, fs::absolute(document).parent_path()), suites);
+  for (const auto& [document, text] : marked)
+    files[document] = with_tables(text, fs::relative(board, fs::absolute(document).parent_path()), suites);
   return files;
 }
 
-std::vector<fs::path> build(const fs::path& board, const std::vector<fs::path>& documents) {
+std::vector<fs::path> build(const fs::path& board, const std::vector<fs::path>& documents, const Told& told) {
   const BoardWriter writer(board);
-  const std::vector<Entry> entries = read_entries(board);
-  const std::map<fs::path, std::string> files = made_files(board, entries, documents);
+  expect_entries_of_scenes(board);
+  const std::vector<Entry> entries = read_entries(board, told);
+  std::map<fs::path, std::string> files = made_files(board, entries, documents, told);
+  for (const Entry& entry : entries) files[board / entry.place() / "entry.json"] = entry_text(entry);
   std::vector<fs::path> paths;
   for (const auto& [path, bytes] : files) {
     if (fs::exists(path) && read_file(path) == bytes) continue;

@@ -220,7 +220,7 @@ std::optional<Json> verification(const fs::path& board, const Entry& entry, cons
   expect_method(entry.identity.row, catalogue);
   expect_own_score(board, entry, installed);
   const std::vector<std::size_t> chosen =
-      options.fresh ? fresh_cells(entry, nonce) : chosen_cells(entry, nonce, options.cells);
+      options.fresh ? fresh_cells(entry, nonce) : chosen_cells(entry, entry.hash(), nonce, options.cells);
   if (options.fresh) installed.design.scene_seed = std::stoull(sha256(nonce).substr(0, 15), nullptr, 16);
   const std::vector<Cell> all = cells_of(entry, installed);
   std::vector<Cell> cells;

@@ -128,7 +128,8 @@ Section words_of_the_board() {
       {{{"rank",
          "1 plus the number of entries that are significantly better (paired test on these scenes, Holm’s "
          "correction) in this ranking, and never less than the rank of an entry with more success. Entries "
-         "of one rank are not known to differ, which does not mean that they perform equally."},
+         "of one rank are not known to differ, which does not mean that they perform equally. All rows count, also "
+         "those that a page hides at first."},
         {"–", "no rank: a reference, or a row that the column \"known\" gives a reason for."},
         {"any policy, paper’s network, answers only",
          "three rankings. Any policy: all that learns and acts. Paper’s network: only methods that learn as the paper "
@@ -163,7 +164,8 @@ Section words_of_the_board() {
          "bound, without a rank."},
         {"partly confined, unconfined", "the kernel could not keep the method from some files or calls."},
         {"n = 10", "success with 10 demonstrations."},
-        {"training s", "seconds of training of one policy, on the submitter’s machine."}}});
+        {"training s", "seconds of training of one policy, on the submitter’s machine."}},
+       true});
   return section;
 }
 

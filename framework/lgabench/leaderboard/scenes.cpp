@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include <lgabench/core/hash.hpp>
@@ -71,6 +72,18 @@ EntryScene read_scene(const JsonReader& reader, const std::string& which, const 
   return scene;
 }
 
+// scenes.json by entry; an empty object where there is none. `is_known`: of ids
+Json read_scenes_file(const fs::path& board, const std::function<bool(const std::string&)>& is_known) {
+  const fs::path file = board / scenes_file;
+  if (!fs::exists(fs::symlink_status(file))) return Json::object();
+  Json json = read_json(file, Links::refused);
+  if (!json.is_object()) JsonReader(json, file.string()).fail("an object: scenes by entry");
+  for (const auto& item : json.items())
+    if (!is_known(item.key()))
+      throw InputError(fmt::format("{}: /{}: expected the id of an entry of the board", file.string(), item.key()));
+  return json;
+}
+
 void write_scenes(const fs::path& board, const BoardScenes& scenes) {
   Json json = Json::object();
   for (const auto& [entry, own] : scenes)
@@ -107,21 +120,22 @@ double seconds_of_scenes(const Entry& entry) {
 
 BoardScenes read_scenes(const fs::path& board, const std::vector<Entry>& entries) {
   BoardScenes scenes;
-  const fs::path file = board / scenes_file;
-  if (!fs::exists(fs::symlink_status(file))) return scenes;
-  const Json json = read_json(file, Links::refused);
-  const JsonReader reader(json, file.string());
-  if (!json.is_object()) reader.fail("an object: scenes by entry");
   std::map<std::string, const Entry*> by_id;
   for (const Entry& entry : entries) by_id[entry.id()] = &entry;
+  const Json json = read_scenes_file(board, [&](const std::string& id) { return by_id.count(id) > 0; });
+  const JsonReader reader(json, (board / scenes_file).string());
   for (const auto& [id, ignored] : json.items()) {
-    const auto entry = by_id.find(id);
-    if (entry == by_id.end()) reader.at(id).fail("an entry of the board");
     reader.at(id).only({"best", "worst"});
     for (const char* which : {"best", "worst"})
-      if (reader.at(id).has(which)) scenes[id][which] = read_scene(reader.at(id).at(which), which, *entry->second);
+      if (reader.at(id).has(which)) scenes[id][which] = read_scene(reader.at(id).at(which), which, *by_id.at(id));
   }
   return scenes;
+}
+
+void expect_entries_of_scenes(const fs::path& board) {
+  std::set<std::string> ids;
+  for (const fs::path& directory : entry_directories(board)) ids.insert(directory.parent_path().filename());
+  read_scenes_file(board, [&](const std::string& id) { return ids.count(id) > 0; });
 }
 
 std::vector<std::string> problems_of_scenes(const fs::path& board, const BoardScenes& scenes) {

@@ -30,6 +30,9 @@ fs::path scene_picture(const std::string& entry, const std::string& which);
 /// docs/formats says, names an entry or episode that is not there, or an end that it did not have.
 BoardScenes read_scenes(const fs::path& board, const std::vector<Entry>& entries);
 
+/// @throws InputError where scenes.json names an entry that has no directory, before any entry is read.
+void expect_entries_of_scenes(const fs::path& board);
+
 /// A line for each picture that is missing, too large or not what scenes.json lists, and for each file that it does
 /// not list.
 std::vector<std::string> problems_of_scenes(const fs::path& board, const BoardScenes& scenes);

@@ -82,14 +82,16 @@ std::vector<NamedStanding> named(const std::vector<Standing>& standings, const L
   return all;
 }
 
-// The first row of a method is its best, as rows stand by rank and success. Each file of answers that somebody submits
-// competes for itself, and so does each way to read names.
+// The first row of a method is its best, as rows stand by rank and success, and stays in view; so does the best whose
+// policy was trained. Each file of answers that somebody submits competes for itself, and so does each way to read
+// names.
 void mark_more(std::vector<NamedStanding>& standings) {
   std::set<std::string> known;
   for (NamedStanding& s : standings) {
     const std::string answers = s.entry->has_answers_as_submitted() ? s.entry->identity.answers_sha256 : "";
     const Identity& identity = s.entry->identity;
-    s.more = !known.insert(identity.row.own_name() + identity.reading.suffix() + " " + answers).second;
+    const std::string untrained = policy_of(*s.entry) == "centroid" ? " untrained" : "";
+    s.more = !known.insert(identity.row.own_name() + identity.reading.suffix() + " " + answers + untrained).second;
   }
 }
 
@@ -213,8 +215,9 @@ Chart curve_chart(const NamedTable& table) {
   Chart chart;
   const std::vector<int>& demonstrations = table.setting.demonstrations;
   chart.title = "Success against the number of demonstrations";
-  chart.subtitle = fmt::format("mean over {} scenarios; the best row of each method, and reference rows",
-                               table.setting.scenarios.size());
+  chart.subtitle =
+      fmt::format("mean over {} scenarios; each method's best row, trained and untrained, and reference rows",
+                  table.setting.scenarios.size());
   chart.axis = "demonstrations";
   chart.alternative = chart.title + ", as in the table's columns";
   const double pad = .08 * (demonstrations.back() - demonstrations.front());

@@ -16,7 +16,7 @@ namespace lgabench::leaderboard {
 struct NamedStanding : Standing {
   std::string name{};             // as statistics/names.hpp takes it; no two of a table alike
   std::string label{}, policy{};  // what readers are shown in place of the name; no two pairs alike
-  bool more = false;              // another row of its method stands above it
+  bool more = false;              // another row of its method stands above it, as trained or untrained as it is
 
   bool is_reference() const { return entry->identity.row.is_reference(); }
   /// "LGA, heat map"

@@ -35,9 +35,9 @@ void expect_chosen(const JsonReader& line, const Entry& entry, const std::vector
   line.at("episodes").integer(episodes, episodes);
 }
 
-void expect_replay(const JsonReader& line, const Entry& entry) {
+void expect_replay(const JsonReader& line, const Entry& entry, const std::string& hash) {
   const std::size_t count = line.at("cells").strings().size();
-  expect_chosen(line, entry, chosen_cells(entry, line.at("nonce").string(), count));
+  expect_chosen(line, entry, chosen_cells(entry, hash, line.at("nonce").string(), count));
   const auto cells = static_cast<long long>(count);
   const long long identical = line.at("bit_identical").integer(0, cells);
   const long long flips =
@@ -83,14 +83,13 @@ struct Sum {
   }
 };
 
-// What a line would give its entry, were it vouched for; "" where the entry has that already.
-std::string said(const Entry& entry, const Json& line) {
+// What a line would give its entry, were it vouched for; "" where the entry, of that tier, has that already.
+std::string said(const Entry& entry, Tier now, bool is_fresh, const Json& line) {
   const bool passed = line.at("passed");
-  if (line.at("kind") == "fresh")
-    return !passed ? "differs on fresh scenes" : entry.fresh() > 0 ? "" : "agrees on fresh scenes";
+  if (line.at("kind") == "fresh") return !passed ? "differs on fresh scenes" : is_fresh ? "" : "agrees on fresh scenes";
   if (!passed) return "a replay differed";
   const Tier tier = tier_of(entry, line);
-  return tier <= entry.tier() ? "" : to_string(tier);
+  return tier <= now ? "" : to_string(tier);
 }
 
 // Of the share of successes of one out of so many persons, who have their episodes in turn; no less than their scenes
@@ -122,7 +121,7 @@ report::Reproduction replay_verdict(const Entry& entry, const Json& line) {
   return report::verdict_of({{"", all}});
 }
 
-void expect_verification(const JsonReader& line, const Entry& entry) {
+void expect_verification(const JsonReader& line, const Entry& entry, const std::string& hash) {
   line.only({"kind",     "nonce",       "cells",      "bit_identical",  "flips",         "only_recorded",
              "episodes", "passed",      "by",         "when",           "program",       "build",
              "machine",  "confinement", "scene_seed", "demonstrations", "training_seed", "difference",
@@ -140,7 +139,7 @@ void expect_verification(const JsonReader& line, const Entry& entry) {
   for (const char* count : {"bit_identical", "flips", "episodes"})
     line.at(count).integer(0, std::numeric_limits<int>::max());
   if (kind == "replay")
-    expect_replay(line, entry);
+    expect_replay(line, entry, hash);
   else
     expect_fresh(line, entry);
 }
@@ -213,8 +212,10 @@ std::vector<FreshEstimate> fresh_estimates(const Entry& entry, const std::vector
 std::vector<std::string> claims(const Entry& entry) {
   constexpr std::size_t most = 3;
   std::vector<std::string> all;
+  const Tier tier = entry.tier();
+  const bool is_fresh = entry.fresh() > 0;
   for (const Json& line : entry.verifications) {
-    const std::string what = entry.counts(line) ? "" : said(entry, line);
+    const std::string what = entry.counts(line) ? "" : said(entry, tier, is_fresh, line);
     std::string claim = fmt::format("claimed by {}: {}", line.at("by").get<std::string>(), what);
     if (!what.empty() && !contains(all, claim)) all.push_back(std::move(claim));
   }

@@ -9,8 +9,8 @@
 namespace lgabench::leaderboard {
 
 /// A line as docs/formats has it: its cells are those that its nonce chooses, and its counts contradict neither each
-/// other nor the entry nor `passed`. @throws InputError with the place
-void expect_verification(const JsonReader& line, const Entry& entry);
+/// other nor the entry nor `passed`. `hash`: the entry's. @throws InputError with the place
+void expect_verification(const JsonReader& line, const Entry& entry, const std::string& hash);
 
 /// A replay's verdict, from its counts: "agrees" on another processor than the entry's first alone.
 /// @pre expect_verification()

@@ -86,8 +86,10 @@ void expect_selection(const JsonReader& selection) {
   const JsonReader target = selection.at("target");
   target.has("sets") ? target.at("sets").elements().size() : target.at("object_types").json().size();
   for (const char* text : {"provenance", "source", "asked_as"}) selection.at(text).string();
+  constexpr double most = 1e15;  // of which a run may have many in a sum
   for (const char* number : {"lm_queries", "lm_tokens", "lm_seconds", "human_seconds"})
-    if (selection.at("cost").at(number).number() < 0) selection.at("cost").at(number).fail("0 or more");
+    if (const JsonReader cost = selection.at("cost").at(number); !(cost.number() >= 0 && cost.number() <= most))
+      cost.fail(fmt::format("a number from 0 to {:g}", most));
 }
 
 // What was selected for each of the cell's commands.

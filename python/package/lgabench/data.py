@@ -51,10 +51,16 @@ def _lines(data: bytes) -> Iterator[dict[str, Any]]:
 
 def load_run(directory: Path, verify: bool = True) -> Run:
     """Reads a run's directory. With `verify`, each file's SHA-256 is compared with the cell's status.json. ValueError names a
-    file that is not as it was written, OSError one that cannot be read. A symbolic link is refused."""
+    file that is not as it was written, or the run that has one; OSError one that cannot be read. A symbolic link is refused."""
+    try:
+        return _run_at(pathlib.Path(directory), verify)
+    except (AttributeError, IndexError, KeyError, RecursionError, TypeError, UnicodeDecodeError, json.JSONDecodeError) as e:
+        raise ValueError(f"{os.fspath(directory)}: not a run as lgabench writes it: {type(e).__name__}: {e}") from e
+
+
+def _run_at(root: pathlib.Path, verify: bool) -> Run:
     import pandas
 
-    root = pathlib.Path(directory)
     run = json.loads(_read(root / "run.json"))
     if run["version"].startswith(("0.1.", "0.2.")):
         raise ValueError(f"{root / 'run.json'}: written by lgabench {run['version']}, whose runs this version cannot read")

@@ -166,7 +166,7 @@ def _of_lm_eval(file: pathlib.Path) -> tuple[list[Reply], str, dict[str, Any]]:
         request = {"max_tokens": arguments["max_gen_toks"], "temperature": arguments.get("temperature", 0)}
         replies.append({**{name: doc[name] for name in ("suite", "form", "id")}, **dict(zip(("system", "user"), _shown(shown, doc))),
                         "reply": line["resps"][0][0]})
-    results = file.with_name("results_" + file.stem.rsplit("_", 1)[1] + ".json")
+    results = file.with_name(f"results_{file.stem.rpartition('_')[2]}.json")
     model = json.loads(results.read_text()).get("model_name") if results.exists() else ""
     return replies, model or "", request
 
@@ -190,21 +190,22 @@ def answers(words: Sequence[str]) -> int:
         return subprocess.call([PROGRAM, "answers", *words])
     try:
         replies, model, request = replies_of(pathlib.Path(log))
-    except (ImportError, KeyError, ValueError) as e:
-        print(f"lgabench: {log}: no log of lgabench's tasks: {e}", file=sys.stderr)
-        return 2
-    with tempfile.TemporaryDirectory() as folder:
-        lines = pathlib.Path(folder, "replies.jsonl")
-        lines.write_text("".join(json.dumps(reply) + "\n" for reply in replies))
+        text = "".join(json.dumps(reply) + "\n" for reply in replies)
         more = ["--model", known.model or model, "--request", known.request or json.dumps(request)]
-        return subprocess.call([PROGRAM, "answers", "--from", lines, *more, *rest])
+        with tempfile.TemporaryDirectory() as folder:
+            lines = pathlib.Path(folder, "replies.jsonl")
+            lines.write_text(text)
+            return subprocess.call([PROGRAM, "answers", "--from", lines, *more, *rest])
+    except Exception as e:  # a log is a stranger's: any member may be of any type, size and depth
+        print(f"lgabench: {log}: no log of lgabench's tasks: {type(e).__name__}: {' '.join(str(e).split())[:300]}", file=sys.stderr)
+        return 2
 
 
 def _is_log(file: pathlib.Path) -> bool:
-    if file.suffix in (".eval", ".json") or not file.exists():
-        return file.exists()
-    with file.open() as lines:
-        return '"doc_id"' in lines.readline()
+    if not file.is_file() or file.suffix in (".eval", ".json"):
+        return file.is_file()
+    with file.open("rb") as lines:
+        return b'"doc_id"' in lines.readline(1 << 20)
 
 
 def main() -> None:

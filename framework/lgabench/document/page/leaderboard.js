@@ -41,8 +41,26 @@ if (data.tabs.length > 1) {
   choose(0);
 }
 
+// Ranks count all rows: where hidden ones stand between two ranks, the lower says so.
+function explainRanks(rows, rankOf) {
+  let before = "", hidden = 0;
+  for (const row of rows) {
+    const rank = rankOf(row);
+    if (!(rank > 0)) continue;
+    hidden += row.hidden;
+    delete row.cells[0].dataset.hidden;
+    if (row.hidden) continue;
+    if (hidden && rank !== before) {
+      row.cells[0].dataset.hidden = `after ${hidden} hidden`;
+      hidden = 0;
+    }
+    before = rank;
+  }
+}
+
 // One filter for a page's tables: rows that have all of the words, and the chosen policy and answers. A word that some
-// row has as it stands is a whole one: "lga" does not find LGA-S. Without words, the best row of each method, or all.
+// row has as it stands is a whole one: "lga" does not find LGA-S. Without words, each method's best row, trained and
+// untrained, or all.
 const boards = [...document.querySelectorAll("[id^=table] table.sortable, [id^=overview] table")]
   .filter((table) => !/^table.*-(answers|curves)$/.test(table.closest("section").id));
 if (boards.length) {
@@ -74,9 +92,10 @@ if (boards.length) {
         ? !said.every((word) => words.some((one) => whole.includes(word) ? one === word : one.includes(word))) ||
           chosen.some(([head, choice]) => valueOf(row, head) !== choice.value)
         : row.classList.contains("more") && !all.checked;
+    for (const table of boards) explainRanks(rows.filter((row) => row.closest("table") === table), (row) => valueOf(row, "rank"));
   };
   const more = [...document.querySelectorAll("[id^=table]:not([id*='-']) > .frame tr.more")].length;
-  label.append(all, more ? ` all rows (${more} more), not only the best of each method` : "");
+  label.append(all, more ? ` all rows (${more} more), not only each method’s best, trained and untrained` : "");
   label.hidden = !more;
   wanted.oninput = all.onchange = apply;
   choices.forEach(([, choice]) => { choice.onchange = apply; });
@@ -114,16 +133,21 @@ function strip(won) {
     `aria-label="${count} of ${won.length} succeeded"><path d="${bars}"/></svg>`;
 }
 
-// The worst and the best scene of an entry, made again by a replay.
-function pictures(entry, setting) {
+// The worst and the best scene of an entry, made again by a replay: those of the scenario, and buttons that lead to others.
+function pictures(entry, setting, scenario) {
   if (!entry.scenes.length) return `<p>No pictures yet: <code>lgabench leaderboard scenes ${entry.id}</code> makes two.</p>`;
-  const where = (one) => `${setting.scenarios.find((scenario) => scenario.id === one.scenario).title}, ` +
-    `${setting.titles[one.arm]}, ${one.n ? `${one.n} demonstration${one.n > 1 ? "s" : ""}, ` : ""}training seed ${one.seed}, scene ${one.index}`;
-  return `<div class="scenes">` + entry.scenes.map((one) =>
+  const titleOf = (one) => setting.scenarios.find(({ id }) => id === one.scenario).title;
+  const end = (one) => one.which === "best" ? "Where it does best" : "Where it does worst";
+  const own = entry.scenes.filter((one) => one.scenario === scenario);
+  const others = entry.scenes.filter((one) => one.scenario !== scenario).map((one) =>
+    `<button type="button" data-scenario="${escaped(one.scenario)}">${end(one)}: ${escaped(titleOf(one))}</button>`).join(" ");
+  const where = (one) => `${titleOf(one)}, ${setting.titles[one.arm]}, ${one.n ? `${one.n} demonstration${one.n > 1 ? "s" : ""}, ` : ""}training seed ${one.seed}, scene ${one.index}`;
+  return `<div class="scenes">` + own.map((one) =>
     `<figure><img src="${escaped(one.picture)}" width="516" height="128" alt="${escaped(`${one.command} ${words(one.outcome)}`)}">` +
-    `<figcaption>${one.which === "best" ? "Where it does best" : "Where it does worst"}: <b>${escaped(words(one.outcome))}</b><br>` +
+    `<figcaption>${end(one)}: <b>${escaped(words(one.outcome))}</b><br>` +
     `${escaped(one.command)}<small>${escaped(where(one))}</small></figcaption></figure>`).join("") + "</div>" +
-    `<p><small>Left: before, the target outlined, the action from the ring to the line’s end. Right: after.</small></p>`;
+    (own.length ? `<p><small>Left: before, the target outlined, the action from the ring to the line’s end. Right: after.</small></p>` : "") +
+    (others ? `<p>${own.length ? "Another scenario" : "Pictures of other scenarios"}: ${others}</p>` : "");
 }
 
 function fill(body, entry, setting, scenario) {
@@ -149,7 +173,8 @@ function fill(body, entry, setting, scenario) {
 function show(row) {
   const entry = data.entries[Math.floor(row / many)];
   if (!entry) return;
-  const setting = data.settings[entry.table], at = Math.max(0, row % many - 1);
+  const setting = data.settings[entry.table];
+  const at = row % many ? row % many - 1 : Math.max(0, setting.scenarios.findIndex(({ id }) => id === entry.scenes[0]?.scenario));
   $("panel-title").textContent = entry.name;
   const link = ({ text, url }) => url ? `<a href="${escaped(url)}">${escaped(text)}</a>` : `<code>${escaped(text)}</code>`;
   const code = (text) => `<code>${escaped(text)}</code>`;
@@ -160,12 +185,18 @@ function show(row) {
   const body = document.createElement("div"), about = document.createElement("dl"), choice = $("outcome");
   about.innerHTML = facts.map(([name, value]) => `<dt>${name}</dt><dd>${value}</dd>`).join("");
   choice.innerHTML = setting.scenarios.map((one, i) => `<option${i === at ? " selected" : ""} value="${escaped(one.id)}">${escaped(one.title)}</option>`).join("");
+  const seen = document.createElement("div");
   choice.onchange = () => {
+    seen.innerHTML = pictures(entry, setting, choice.value);
     fill(body, entry, setting, choice.value);
     fit(body);
   };
-  const seen = document.createElement("div");
-  seen.innerHTML = pictures(entry, setting);
+  seen.onclick = ({ target }) => {
+    if (!target.dataset.scenario) return;
+    choice.value = target.dataset.scenario;
+    choice.onchange();
+    choice.focus();
+  };
   $("panel-body").replaceChildren(seen, about, body);
   for (const [id, step] of [["previous", -many], ["next", many]]) {
     $(id).disabled = !data.entries[Math.floor((row + step) / many)];

@@ -52,13 +52,13 @@ for (const table of document.querySelectorAll("table.sortable")) {
   });
 }
 
-// A table that is wider than its place scrolls in it, below its heads and beside the names of its rows. On a narrow
+// A table's heads stay in view while the page scrolls. One that is wider than its place scrolls sideways in it. On a narrow
 // screen and on paper it becomes a list of its rows, each number with its column's head before it. Before it scrolls, its
 // intervals go below their numbers.
 const narrow = 900;  // px
 function fit(within = document) {
   const frames = [...within.querySelectorAll(".frame")];
-  frames.forEach((frame) => frame.classList.remove("list", "stacked"));
+  frames.forEach((frame) => frame.classList.remove("list", "stacked", "fits"));
   const lists = innerWidth < narrow || document.body.classList.contains("printed");
   const tooWide = () => frames.filter((frame) => frame.scrollWidth > frame.clientWidth + 1);
   if (!lists) tooWide().forEach((frame) => frame.classList.add("stacked"));
@@ -72,7 +72,8 @@ function fit(within = document) {
         cell.classList.toggle("none", cell.textContent.trim() === "–");
       });
     frame.classList.toggle("list", list);
-    scrolls || frame.scrollHeight > frame.clientHeight + 1 ? frame.setAttribute("tabindex", 0) : frame.removeAttribute("tabindex");
+    frame.classList.toggle("fits", !scrolls);
+    scrolls ? frame.setAttribute("tabindex", 0) : frame.removeAttribute("tabindex");
     const first = frame.querySelector("tbody tr:not(.group)");
     const name = !list && scrolls && first ? first.querySelectorAll("th").length - 1 : -1;  // the column of the rows' names
     for (const row of frame.querySelectorAll("tr:not(.group)"))
