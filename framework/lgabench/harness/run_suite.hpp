@@ -75,6 +75,11 @@ std::string run_hash(const std::vector<Cell>& cells, const Catalogue& catalogue)
 /// Whether what acts in the cell is a method that did not come with the installation, told by its bytes.
 bool is_strangers(const Cell& cell, const Catalogue& catalogue);
 
+/// Whether nothing but the installation's own arithmetic computes the cell: no plugin that came from elsewhere, and no
+/// LibTorch, whose kernels are chosen by the processor. Such a cell has the same bits on every processor with fused
+/// multiply-add, owe_same_bits(). @throws as Catalogue::find().
+bool has_own_arithmetic(const Cell& cell, const Catalogue& catalogue);
+
 /// What lgabench-worker is told of a cell. `answers` holds the plan's (keep_answers), `scratch` is empty.
 CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& cell,
                  const std::filesystem::path& directory, const std::filesystem::path& answers,

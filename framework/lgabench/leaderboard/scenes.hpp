@@ -30,6 +30,9 @@ fs::path scene_picture(const std::string& entry, const std::string& which);
 /// docs/formats says, names an entry or episode that is not there, or an end that it did not have.
 BoardScenes read_scenes(const fs::path& board, const std::vector<Entry>& entries);
 
+/// Drops an entry's episodes from scenes.json, and their pictures.
+void drop_scenes(const fs::path& board, const std::string& id);
+
 /// A line for each picture that is missing, too large or not what scenes.json lists, and for each file that it does
 /// not list.
 std::vector<std::string> problems_of_scenes(const fs::path& board, const BoardScenes& scenes);
