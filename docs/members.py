@@ -20,7 +20,7 @@ PAGES = {
         "scenario", "suite", "suite_claims", "lexicon", "recorded_answers", "cassette", "disputed", "paper_claims", "paper_methods"]),
     "study-members": ("Members of a study's files", ["study_protocol", "participant", "study_events", "study_results"]),
     "leaderboard-members": ("Members of the leaderboard's files", [
-        "entry", "entry_meta", "cells", "verifications", "vouched", "vouched_entries", "labels", "tracks", "scenes"]),
+        "entry", "entry_meta", "cells", "verifications", "vouched", "vouched_entries", "instructions", "labels", "tracks", "scenes"]),
 }
 STRINGS = {"^[0-9a-f]{16}$": "16 hex digits", "^[0-9a-f]{32}$": "32 hex digits", "^[0-9a-f]{40}$": "40 hex digits", "^[0-9a-f]{64}$": "SHA-256"}
 ENDS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}

@@ -72,7 +72,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     claims(entry);
     if (fuzz::takes_long(text) && is_small(entry)) {
       made_files(board, read_entries(board), {});
-      add_vouched(entry, replay_of(entry, "somebody", entry.processor()));
+      add_vouched(entry, replay_of(entry, "somebody", entry.processor().name));
       made_files(board, {entry}, {});
     }
   } catch (const InputError&) {

@@ -38,6 +38,8 @@ class Forgeries(Case):
             if (BOARD / name).exists():
                 vouched = json.loads((BOARD / name).read_text())
                 (self.board / name).write_text(json.dumps({key: vouched[key] for key in hashes & vouched.keys()}, indent=1, sort_keys=True) + "\n")
+        inferred, ids = json.loads((BOARD / "instructions.json").read_text()), {entry.parent.name for entry in self.board.glob("entries/*/*/*")}
+        (self.board / "instructions.json").write_text(json.dumps({id: inferred[id] for id in sorted(ids & inferred.keys())}, indent=1) + "\n")
         self.leaderboard("build")
         for words in (["init", "-q", "-b", "main"], ["add", "board"], ["commit", "-qm", "before"]):
             self.git(*words)
@@ -204,6 +206,9 @@ class Forgeries(Case):
         file.unlink()
         self.assertIn(said, self.check(expect=1))
         file.write_text(text)
+        (self.board / "instructions.json").write_text("{}")
+        self.assertIn("instructions.json: changed since HEAD: it is the maintainers'", self.check(expect=1))
+        self.git("checkout", "board/instructions.json")
         (self.board / "tracks.json").write_text(json.dumps({"open": ["q2-leaderboard"]}))
         self.assertIn("tracks.json: changed since HEAD: it is the maintainers'", self.check(expect=1))
         (self.board / "tracks.json").unlink()
@@ -413,7 +418,9 @@ class Forgeries(Case):
                               ({"bit_identical": 31}, "/bit_identical: expected a whole number from 0"),
                               ({"bit_identical": 12, "cells_": 1, "flips": 1}, "/flips: expected"),
                               ({"flips": 99}, "/passed: expected false, by its counts"),
-                              ({"machine": {"processor": "AMD EPYC"}}, "/passed: expected false, by its counts"),
+                              ({"machine": {"processor": "AMD EPYC", "instructions": "AVX-512"}}, "/passed: expected false, by its counts"),
+                              ({"machine": {"processor": "AMD EPYC with AVX-512"}}, "/passed: expected false, by its counts"),
+                              ({"machine": {"processor": "AMD EPYC", "instructions": "MMX"}}, "/machine/instructions: expected AVX-512"),
                               ({"flips": 8, "only_recorded": 8}, "/passed: expected false, by its counts"),
                               ({"episodes": 1}, "/episodes: expected"), ({"by": "B" * 201}, "/by: expected at most 200 bytes"), ({"when": "now"}, "/when: expected a date")):
             with self.subTest(says, **members):
@@ -423,6 +430,106 @@ class Forgeries(Case):
                 self.add_line(self.rival, cells=12, **members)
                 self.assertIn(says, self.leaderboard("check", expect=1).stderr)
                 file.write_text(text)
+
+    def test_instructions_are_inferred_of_no_other_entry(self):
+        file = self.board / "instructions.json"
+        inferred = json.loads(file.read_text())
+        for id, value, says in (("0" * 16, "AVX2", "no entry of this id whose record lacks its instructions"),
+                                (self.rival.parent.name, "MMX", "expected one of AVX-512, AVX2, without FMA")):
+            file.write_text(json.dumps({**inferred, id: value}))
+            self.assertIn(f"instructions.json: /{id}: {says}", self.leaderboard("check", expect=1).stderr)
+
+    def supersede(self, entry, outcome=".", **evidence):
+        """By hand: other outcomes in an entry's place, whose files go where leaderboard supersede puts them."""
+        old, before = json.loads((entry / "entry.json").read_text()), entry_hash(entry)
+        kept = self.board / "superseded" / old["id"] / before[:16]
+        shutil.copytree(entry, kept)
+        (entry / "verifications.jsonl").unlink()
+        lines = [{**line, "digest": "0" * 64, "outcomes": {arm: outcome * len(letters) for arm, letters in line["outcomes"].items()}}
+                 for line in map(json.loads, (entry / "cells.jsonl").read_text().splitlines())]
+        (entry / "cells.jsonl").write_text("".join(map(canonical, lines)))
+        new = {**old, "supersedes": [*old.get("supersedes", []), {"hash": before, "when": "2026-12-01", "reason": "one order"}]}
+        (entry / "entry.json").write_text(json.dumps(new, sort_keys=True, indent=1, ensure_ascii=False) + "\n")
+        return kept
+
+    def forget(self, *hashes):
+        for name in "vouched.json", "vouched_entries.json":
+            vouched = json.loads((self.board / name).read_text())
+            (self.board / name).write_text(json.dumps({key: value for key, value in vouched.items() if key not in hashes}, indent=1, sort_keys=True) + "\n")
+
+    def test_only_the_maintainers_supersede(self):
+        """With all old bytes where they belong: an entry that nobody vouches for, and the rival's."""
+        forged, rival = self.invent(), self.rival.relative_to(self.board)
+        self.leaderboard("build")
+        self.git("add", "board")
+        self.git("commit", "-qm", "an entry")
+        self.add_line(forged, cells=3)
+        self.git("commit", "-qam", "a line")
+        place = forged.relative_to(self.board)
+        self.supersede(forged, "a")
+        said = self.check(expect=1)
+        self.assertIn(f"{place}: superseded since HEAD: only the maintainers do that (--maintainer)", said)
+        self.assertIn("1 problem\n", said)
+        self.assertIn("0 problems", self.check("--maintainer", expect=0))
+        before = entry_hash(self.rival)
+        self.supersede(self.rival)
+        self.assertIn("vouched.json: /" + before, self.check(expect=1))
+        self.forget(before)
+        said = self.check(expect=1)
+        self.assertIn(f"{rival}: superseded since HEAD: only the maintainers do that", said)
+        self.assertIn("vouched.json: changed since HEAD: it is the maintainers'", said)
+        self.assertIn("0 problems", self.check("--maintainer", expect=0))
+        self.assertEqual(self.rows()[rival.parts[2]][2], "recomputed; not yet replayed")
+
+    def test_what_was_superseded_stays(self):
+        before = entry_hash(self.rival)
+        kept, place = self.supersede(self.rival), self.rival.relative_to(self.board)
+        at = kept.relative_to(self.board)
+        self.forget(before)
+        lines = (kept / "verifications.jsonl").read_text()
+        (kept / "verifications.jsonl").write_text("")  # not the bytes that the board had
+        said = self.check("--maintainer", expect=1)
+        self.assertIn(f"{place}/cells.jsonl: an outcome or a cell changed since HEAD", said)
+        self.assertIn(f"{at}: is no entry of the board whose place another took", said)
+        (kept / "verifications.jsonl").write_text(lines)
+        self.assertIn("0 problems", self.check("--maintainer", expect=0))
+        self.git("add", "board")
+        self.git("commit", "-qm", "superseded")
+        self.assertIn("0 problems", self.check(expect=0))
+        entry = (kept / "entry.json").read_text()
+        (kept / "entry.json").write_text(entry.replace('"confinement": "Landlock 7, seccomp"', '"confinement": "none"'))
+        self.assertNotEqual((kept / "entry.json").read_text(), entry)
+        self.assertIn(f"{at}: changed since HEAD", self.check("--maintainer", expect=1))
+        (kept / "entry.json").write_text(entry)
+        cells = (kept / "cells.jsonl").read_text()
+        (kept / "cells.jsonl").write_text(cells.replace('"digest":"', '"digest":"0', 1).replace(cells.split('"digest":"')[1][63], "", 1))
+        self.check(expect=1)
+        (kept / "cells.jsonl").write_text(cells)
+        shutil.copytree(kept, kept.with_name("0" * 16))
+        self.assertIn(f"expected at {at}, by what it is", self.check(expect=1))
+        shutil.rmtree(kept.with_name("0" * 16))
+        shutil.copytree(kept, kept.parent.parent / self.lga.parent.name / kept.name)
+        self.assertIn(f"expected at {at}, by what it is", self.check(expect=1))
+        shutil.rmtree(kept.parent.parent / self.lga.parent.name)
+        (kept / "more.txt").write_text("")
+        self.assertIn("expected only entry.json", self.check(expect=1))
+        (kept / "more.txt").unlink()
+        shutil.rmtree(kept)
+        said = self.check("--maintainer", expect=1)
+        self.assertIn(f"{at}, whose place it took, is not there", said)
+        self.assertIn(f"{at}/cells.jsonl: is gone since HEAD", said)
+
+    def test_a_history_that_nobody_has(self):
+        """Beside an entry that is as it was."""
+        kept = self.board / "superseded" / self.rival.parent.name / entry_hash(self.rival)[:16]
+        shutil.copytree(self.rival, kept)
+        self.assertIn(f"{kept.relative_to(self.board)}: no entry of this id names it in /supersedes", self.check("--maintainer", expect=1))
+        shutil.rmtree(kept.parent.parent)
+        entry = json.loads((self.rival / "entry.json").read_text())
+        for history, says in (([{"hash": "0" * 64, "when": "2026-12-01", "reason": "x"}], "/supersedes appeared"), ([], "at least one entry"),
+                              ([{"hash": "0" * 64, "when": "2026-12-01", "reason": "a\nb"}], "in one line")):
+            (self.rival / "entry.json").write_text(json.dumps({**entry, "supersedes": history}, sort_keys=True, indent=1, ensure_ascii=False) + "\n")
+            self.assertIn(says, self.check("--maintainer", expect=1))
 
     def test_an_unconfined_run_cannot_hide(self):
         forged = self.invent(lambda entry: entry["evidence"][0].update(confinement="N/A"))

@@ -6,6 +6,7 @@ import csv
 import hashlib
 import json
 import os
+import pathlib
 import re
 import shutil
 import struct
@@ -289,6 +290,125 @@ class Submissions(Board):
         self.assertIn("was withdrawn before", self.leaderboard("withdraw", ids[0], "--reason", "again", expect=2).stderr)
         self.change_run(started="2030-01-01T00:00:00Z")
         self.assertIn("this identity was withdrawn", self.add("run", 1, "--rows", "fixture_constant").stderr)
+
+
+class Superseding(Board):
+    """Entries with other bits than this build gives: a run whose first row was changed in a digit of an action."""
+
+    def setUp(self):
+        super().setUp()
+        if self is getattr(type(self), "first", self):
+            return
+        self.take_run()
+        shutil.copytree(self.dir / "run", self.dir / "old")
+        rewrite(self.cell("old"), "episodes.jsonl", lambda e: {**e, "action": [x + 2 ** -40 for x in e["action"]]})
+        self.add("old")
+        self.board = self.dir / "board"
+        said = self.leaderboard("verify", "--by", "B. Reader", *PLUGIN, expect=1).stdout
+        self.place = pathlib.PurePath(re.search(r"^DIFFERS (entries/fixture_constant/\S+): 7 of 8 cells bit-identical, 0 of \d+ episodes ended "
+                                                r"differently; the entry: (.+); here: \2 \(nonce", said, re.M)[1])
+        for file in self.board.glob("entries/*/*/*/verifications.jsonl"):
+            self.leaderboard("vouch", file.parent.relative_to(self.board), "1")
+        self.id = self.place.parts[2]
+        cell = json.loads((self.board / self.place / "cells.jsonl").read_text().splitlines()[0])
+        won = cell["outcomes"]["test"].find(".")
+        picture = b"not looked at"
+        (self.board / "scenes").mkdir()
+        (self.board / f"scenes/{self.id}-{'worst' if won < 0 else 'best'}.png").write_bytes(picture)
+        (self.board / "scenes.json").write_text(json.dumps({self.id: {"worst" if won < 0 else "best": {
+            "cell": cell["key"], "arm": "test", "index": max(won, 0), "command": "x", "sha256": hashlib.sha256(picture).hexdigest()}}}))
+        self.leaderboard("build")
+        self.assertIn("6 entries, 0 problems", self.leaderboard("check").stdout)
+
+    def supersede(self, *words, run="run", expect=0):
+        return self.leaderboard("supersede", run, "--by", "B. Maintainer", "--reason", "one order of additions", *words, expect=expect)
+
+    def files(self, directory):
+        return {file.relative_to(directory): file.read_bytes() for file in directory.rglob("*") if file.is_file()}
+
+    def test_cells_computed_anew_take_an_entrys_place(self):
+        before, old = self.files(self.board / self.place), json.loads((self.board / self.place / "entry.json").read_text())
+        digest = hashlib.sha256((self.id + "\n").encode() + before[pathlib.Path("cells.jsonl")]).hexdigest()
+        self.assertIn(digest, json.loads((self.board / "vouched.json").read_text()))
+        done = self.supersede()
+        self.assertIn(f"superseded {self.place}\n", done.stdout)
+        self.assertEqual(done.stdout.count("the same bits already: "), 5)
+        self.assertIn("Next, for each: lgabench leaderboard verify ENTRY", done.stderr)
+        self.assertEqual(self.files(self.board / "superseded"), {pathlib.Path(self.id) / digest[:16] / name: text for name, text in before.items()})
+        self.assertEqual(sorted(map(str, self.files(self.board / self.place))), ["cells.jsonl", "entry.json"])
+        entry = json.loads((self.board / self.place / "entry.json").read_text())
+        self.assert_as_schema("entry", entry)
+        self.assertEqual({**entry["supersedes"][0], "when": ""}, {"hash": digest, "when": "", "reason": "one order of additions"})
+        self.assertEqual((entry["identity"], entry["about"], len(entry["evidence"])), (old["identity"], old["about"], 1))
+        self.assertEqual(entry["evidence"][0]["by"], "B. Maintainer")
+        for name in "vouched.json", "vouched_entries.json":
+            self.assertEqual((digest in json.loads((self.board / name).read_text()), len(json.loads((self.board / name).read_text()))), (False, 5))
+        self.assertEqual((json.loads((self.board / "scenes.json").read_text()), list((self.board / "scenes").iterdir())), ({}, []))
+        self.leaderboard("build")
+        self.assertIn("6 entries, 0 problems", self.leaderboard("check").stdout)
+        self.assertIn("one order of additions", (self.board / "tiny.html").read_text())
+        done = self.leaderboard("verify", self.id, "--by", "B. Maintainer", "--cells", "1", *PLUGIN)
+        self.assertRegex(done.stdout, r"^agrees .*: 1 of 1 cells bit-identical, 0 of 4 episodes ended differently \(nonce")
+        self.assertEqual(done.stderr.splitlines()[-1], "Too few cells to count: nobody vouches for a replay of fewer than 8 (--cells 8)")
+        done = self.leaderboard("verify", self.id, "--by", "B. Maintainer", *PLUGIN)
+        self.assertEqual(done.stderr.splitlines()[-1], f"To make it count: lgabench leaderboard vouch {self.id} 2")
+        self.leaderboard("vouch", self.id, "2")
+        self.leaderboard("build")
+        self.assertIn("6 entries, 0 problems", self.leaderboard("check").stdout)
+        self.assertRegex((self.board / "README.md").read_text(), rf"\| \d \| fixture_constant.*{self.id}")
+        self.assertEqual(self.supersede().stdout.count("the same bits already: "), 6)
+        self.leaderboard("build", "--archive", "board.tar.gz")
+
+    def test_an_entry_is_superseded_again(self):
+        self.supersede()
+        shutil.copytree(self.dir / "run", self.dir / "newer")
+        rewrite(self.cell("newer"), "episodes.jsonl", lambda e: {**e, "action": [x + 2 ** -39 for x in e["action"]]})
+        first = self.files(self.board / "superseded")
+        self.assertIn(f"superseded {self.place}", self.supersede("--rows", "fixture_constant,fixture_constant+demonstration=1", run="newer").stdout)
+        both = self.files(self.board / "superseded")
+        self.assertEqual({name: text for name, text in both.items() if name in first}, first)
+        self.assertEqual(len(list((self.board / "superseded" / self.id).iterdir())), 2)
+        self.assertEqual(len(json.loads((self.board / self.place / "entry.json").read_text())["supersedes"]), 2)
+        self.leaderboard("build")
+        self.assertIn("6 entries, 0 problems", self.leaderboard("check").stdout)
+
+    def test_what_supersede_refuses(self):
+        before = self.files(self.board)
+        rewrite(self.cell(), "episodes.jsonl", lambda e: {**e, "scene": "0" * 16})
+        self.assertIn(f"refused: {self.place}: cell heart cells n=2 seed=0 has another with other test scenes in its place", self.supersede(expect=1).stderr)
+        self.assertIn("expected RUN, --reason WORDS, and --by NAME", self.leaderboard("supersede", "old", "--reason", "x", expect=2).stderr)
+        self.change_run("old", smoke=True)
+        self.assertIn("refused: a smoke or limited run", self.supersede(run="old", expect=1).stderr)
+        self.assertEqual(self.files(self.board), before)
+        self.leaderboard("withdraw", self.id, "--reason", "a mistake")
+        self.change_run("old", smoke=False)
+        self.assertIn(f"refused: {self.place}: this identity was withdrawn", self.supersede(run="old", expect=1).stderr)
+        shutil.rmtree(self.board / self.place.parent)
+        self.assertIn(f"refused: {self.place}: not on the board", self.supersede(run="old", expect=1).stderr)
+
+    def test_a_supersede_that_was_killed_is_given_again(self):
+        """At each write, fsync and rename."""
+        count, before = self.dir / "count", self.dir / "before"
+        shutil.copytree(self.board, before)
+        words = ["leaderboard", "supersede", "run", "--by", "B. Maintainer", "--reason", "one order of additions", "--board", "board"]
+
+        def killed_at(number):
+            count.write_bytes(struct.pack("i", 0))
+            more = {"LD_PRELOAD": str(BUILD / "tests/full_disk.so"), "FULL_DISK_UNDER": str(self.board), "FULL_DISK_COUNT": str(count),
+                    "FULL_DISK_KILLS": "1", "FULL_DISK_AT": str(number)}
+            done = subprocess.run(command_line(*words), cwd=self.dir, env={**self.environment, **more}, capture_output=True, text=True)
+            self.assertEqual(done.returncode, -9 if number else 0, done.stderr)
+            return struct.unpack("i", count.read_bytes())[0]
+
+        calls, whole = killed_at(0), self.files(self.board)
+        self.assertGreater(calls, 9)
+        for number in range(1, calls + 1):
+            with self.subTest(number):
+                shutil.rmtree(self.board)
+                shutil.copytree(before, self.board)
+                killed_at(number)
+                self.supersede()
+                self.assertEqual(self.files(self.board), whole)
 
 
 class Refusals(Board):

@@ -78,7 +78,7 @@ class Verify(BesideOneRun):
                  else dict(success=True, failure="none"))
         self.change("episodes.jsonl", 2, **other)
         said = self.line_of_the_cell(self.verify("--all", expect=1).stdout)
-        self.assertRegex(said, r"^differs +\w+ lga.*: from episodes.jsonl line 3, though build, processor and data are")
+        self.assertRegex(said, r"^differs +\w+ lga.*: from episodes.jsonl line 3, though the same bytes are owed$")
 
     def test_a_changed_training_line_is_found(self):
         self.change("training.jsonl", 0, loss=.125)
@@ -106,7 +106,7 @@ class Verify(BesideOneRun):
         excuses = {"the worker's build": lambda: self.change_status("build", "lgabench-worker", "0" * 64),
                    "a build without the method": lambda: self.change_status("build", "method", None),
                    "the processor": lambda: (self.run_directory / "run.json").write_text(
-                       canonical({**run, "machine": {**run["machine"], "processor": "Z80"}}))}
+                       canonical({**run, "machine": {"processor": "Z80"}}))}
         status = (self.cell / "status.json").read_bytes()
         for excuse, forge in excuses.items():
             with self.subTest(excuse):
@@ -128,15 +128,40 @@ class Verify(BesideOneRun):
         self.assertRegex(said, r"not as recorded:\n  data: answers \([0-9a-f]{8} there, [0-9a-f]{8} here\)\n")
         self.assertIn("\n5 bit-identical\n", said)
 
-    def test_another_processor_is_named(self):
+    def change_machine(self, **machine):
         run = json.loads((self.run_directory / "run.json").read_text())
+        (self.run_directory / "run.json").write_text(json.dumps({**run, "machine": machine}))
+
+    def test_other_bits_are_owed_to_nobody_with_fma(self):
+        """Of a shipped method: whatever the processor is called, and as wide as its vectors are."""
+        machine = json.loads((self.run_directory / "run.json").read_text())["machine"]
         flags = pathlib.Path("/proc/cpuinfo").read_text().split("flags", 1)[-1].split("\n")[0].split()
-        vectors = " with AVX-512" if "avx512f" in flags else " with AVX2" if {"avx2", "fma"} <= set(flags) else ""
-        self.assertTrue(run["machine"]["processor"].endswith(vectors), "last bits of training depend on them")
-        run["machine"]["processor"] = "Z80"
-        (self.run_directory / "run.json").write_text(json.dumps(run))
-        said = self.verify("--sample", "1", expect=0).stdout
-        self.assertIn("\n  processor (Z80 there, ", said)
+        here = "AVX-512" if "avx512f" in flags else "AVX2" if {"avx2", "fma"} <= set(flags) else "without FMA"
+        self.assertEqual(machine["instructions"], here)
+        self.assertNotIn(here, machine["processor"])
+        said = f"{machine['processor']} {'' if here == 'without FMA' else 'with '}{here}"
+        if here == "without FMA":
+            self.skipTest("no bits are promised here")
+        self.change("training.jsonl", 0, loss=.125)
+        for there, words in (({"processor": "Z80", "instructions": "AVX-512"}, "Z80 with AVX-512"), ({"processor": "Z80 with AVX2"}, "Z80 with AVX2")):
+            self.change_machine(**there)
+            out = self.verify("--all", expect=1).stdout
+            self.assertIn(f"\nbuild and data are those of the record; the record: {words}; here: {said}: the same bytes are owed\n", out)
+            self.assertRegex(self.line_of_the_cell(out), r"^differs .*: from training.jsonl line 1, though the same bytes are owed$")
+            self.assertEqual(out.splitlines()[-2:], [f"the record: {words}; here: {said}", "verdict: differs"])
+
+    def test_processors_that_owe_no_bits_are_named(self):
+        self.change("training.jsonl", 0, loss=.125)
+        for there, words in (({"processor": "Z80"}, "Z80, instructions not recorded"),
+                             ({"processor": "Z80", "instructions": "without FMA"}, "Z80 without FMA")):
+            self.change_machine(**there)
+            out = self.verify("--all", expect=5).stdout
+            self.assertIn(f"not as recorded:\n  processor: the record: {words}; here: ", out)
+            self.assertRegex(self.line_of_the_cell(out), r"^same outcomes .*: from training.jsonl line 1$")
+            self.assertRegex(out.splitlines()[-2], f"^the record: {words}; here: ")
+            self.assertEqual(out.splitlines()[-1], "verdict: agrees")
+        self.change_machine(processor="Z80", instructions="MMX")
+        self.assertIn("/machine/instructions: expected AVX-512, AVX2 or without FMA", self.verify("--all", expect=2).stderr)
 
     def test_an_edited_cell_is_said_before_anything_runs(self):
         with open(self.cell / "episodes.jsonl", "a") as file:

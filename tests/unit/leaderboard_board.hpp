@@ -56,7 +56,7 @@ inline Entry made_entry(const Setting& setting, const std::string& name, double 
                             {"version", "0.2.0"},
                             {"build", Json::object()},
                             {"plugins", Json::array()},
-                            {"machine", {{"processor", "a processor"}}},
+                            {"machine", {{"processor", "a processor"}, {"instructions", "AVX2"}}},
                             {"confinement", "Landlock 6, seccomp"},
                             {"started", "2026-01-01T00:00:00Z"},
                             {"command", "lgabench run q1"},
@@ -87,7 +87,7 @@ inline Entry made_entry(const Setting& setting, const std::string& name, double 
   return entry;
 }
 
-/// A replay of all of an entry's cells by somebody, on a processor; one that passed was bit-identical.
+/// A replay of all of an entry's cells by somebody, on a processor with AVX2; one that passed was bit-identical.
 inline Json replay_of(const Entry& entry, const std::string& by, const std::string& processor, bool passed = true) {
   const std::string nonce(32, '7');
   Json cells = Json::array();
@@ -108,7 +108,7 @@ inline Json replay_of(const Entry& entry, const std::string& by, const std::stri
           {"when", "2026-01-02"},
           {"program", "lgabench 0.2.0"},
           {"build", Json::object()},
-          {"machine", {{"processor", processor}}},
+          {"machine", {{"processor", processor}, {"instructions", "AVX2"}}},
           {"confinement", "Landlock 6, seccomp"}};
 }
 

@@ -564,6 +564,32 @@ TEST(Board, AnOldOutcomeDoesNotChangeAndARecordStays) {
   EXPECT_SAYS(problems, "is gone (leaderboard withdraw keeps the record) since HEAD");
 }
 
+TEST(Board, AnEntryNamesWhoseCellsItsOwnTookThePlaceOf) {
+  const TemporaryDirectory board;
+  const Entry old = made_entry(small_setting(), "a", .5);
+  const auto problems = [&](const std::function<void(Entry&)>& change) {
+    Entry now = made_entry(small_setting(), "a", .6);
+    for (std::size_t i = 0; i < now.cells.size(); ++i) now.cells[i].digest = sha256(old.cells[i].digest);
+    now.supersedes.push_back({{"hash", old.hash()}, {"when", "2026-01-01"}, {"reason", "one order of additions"}});
+    change(now);
+    write_entry(board.path, now);
+    EXPECT_EQ(complaints("entry", read_json(board.path / now.place() / "entry.json")), std::vector<std::string>());
+    build(board.path);
+    return all(check(board.path).problems);
+  };
+  const fs::path kept = board.path / superseded_place(old.id(), old.hash());
+  const auto nothing = [](Entry&) {};
+  write_entry(board.path, old);
+  EXPECT_SAYS(problems(nothing), kept.lexically_relative(board.path).string() + ", whose place it took, is not there");
+  write_file(kept / "entry.json", entry_text(old));
+  write_file(kept / "cells.jsonl", cells_text(old));
+  EXPECT_EQ(problems(nothing), "");
+  EXPECT_SAYS(problems([](Entry& now) { now.supersedes.clear(); }), "no entry of this id names it in /supersedes");
+  EXPECT_SAYS(problems([](Entry& now) { now.cells[1].scenes = std::string(64, '0'); }),
+              "cell heart cells n=10 seed=1 has another with other test scenes in its place");
+  EXPECT_SAYS(problems([](Entry& now) { now.about["by"] = "b"; }), "other authors or another score in its place");
+}
+
 // Generated once, with rates that differ from row to row.
 TEST(Board, TwoHundredEntriesAreCheckedAsFastAsBuiltOnPagesOfThreeMegabytes) {
   const TemporaryDirectory scratch;

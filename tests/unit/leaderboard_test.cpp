@@ -218,6 +218,65 @@ TEST(LeaderboardEntry, ArmsOfAmbiguousWordsAreNoPartOfIt) {
   EXPECT_EQ(played_cell(result, "", "", entry).outcomes.size(), 1u);
 }
 
+TEST(LeaderboardEntry, AReplayOwesTheSameBitsOnOneKindOfProcessor) {
+  const TemporaryDirectory board;
+  Entry entry = made_entry(small_setting(), "a", .5);
+  const auto complaint = [&](const Json& machine, const Json& changed = Json::object()) {
+    Json line = replay_of(entry, "b", "a processor");
+    line.update({{"machine", machine}, {"bit_identical", 0}});
+    line.update(changed);
+    EXPECT_EQ(complaints("verifications", line), std::vector<std::string>());
+    write_file(board.path / entry.place() / "verifications.jsonl", canonical(line) + "\n");
+    const Vouched vouched = read_vouched(board.path);
+    return message_of<InputError>([&] { read_entry(board.path, entry.place(), vouched); });
+  };
+  const Json same{{"processor", "a processor"}, {"instructions", "AVX2"}}, unknown{{"processor", "a processor"}};
+  const std::string owed = "/passed: expected false, by its counts";
+  write_entry(board.path, entry);
+  EXPECT_SAYS(complaint(same), owed);
+  EXPECT_SAYS(complaint({{"processor", "a processor with AVX2"}}), owed);
+  for (const Json& other : {unknown,
+                            Json{{"processor", "a processor"}, {"instructions", "AVX-512"}},
+                            {{"processor", "another"}, {"instructions", "AVX2"}}})
+    EXPECT_EQ(complaint(other), "") << other << ": whether the method owes the same bits, its line alone does not say";
+  entry.evidence.front()["machine"] = unknown;
+  write_entry(board.path, entry);
+  EXPECT_EQ(complaint(same), "") << "the entry does not say";
+  EXPECT_EQ(complaint(unknown), "");
+  write_file(board.path / instructions_file, Json{{entry.id(), "AVX2"}}.dump());
+  EXPECT_SAYS(complaint(same), owed);
+  EXPECT_EQ(complaint(unknown), "");
+  const Entry inferred = read_entries(board.path).front();
+  EXPECT_EQ(to_string(inferred.processor()), "a processor with AVX2 (inferred)");
+  EXPECT_EQ(inferred.rest_hash(), entry.rest_hash()) << "what maintainers infer changes no entry";
+}
+
+// What honest replays of few cells found, whose episodes turn together: DIFFERS by the rule before, in none by chance.
+TEST(LeaderboardEntry, AFewCellsOnAProcessorThatOwesNoBitsAgree) {
+  const TemporaryDirectory board;
+  Entry entry = made_entry(small_setting(), "a", .5);  // 12 cells, half of them with 40 episodes, half with 80
+  entry.evidence.front()["machine"] = {{"processor", "a processor"}};
+  write_entry(board.path, entry);
+  const auto complaint = [&](const Json& counts) {
+    Json line = replay_of(entry, "b", "a processor");
+    line.update({{"bit_identical", 0}});
+    line.update(counts);
+    EXPECT_EQ(complaints("verifications", line), std::vector<std::string>());
+    write_file(board.path / entry.place() / "verifications.jsonl", canonical(line) + "\n");
+    return message_of<InputError>([&] { read_entry(board.path, entry.place()); });
+  };
+  const std::string differs = "/passed: expected false, by its counts";
+  EXPECT_EQ(complaint({{"flips", 10}, {"only_recorded", 6}, {"worse", 3}, {"better", 2}}), "") << "ten of 720";
+  EXPECT_SAYS(complaint({{"flips", 11}, {"only_recorded", 6}, {"worse", 3}, {"better", 2}}), differs);
+  EXPECT_EQ(complaint({{"flips", 7}, {"only_recorded", 7}, {"worse", 5}, {"better", 0}}), "");
+  EXPECT_SAYS(complaint({{"flips", 7}, {"only_recorded", 7}, {"worse", 6}, {"better", 0}}), differs);
+  EXPECT_SAYS(complaint({{"flips", 7}, {"only_recorded", 7}}), differs) << "a line that does not say in which cells";
+  EXPECT_SAYS(complaint({{"flips", 2}, {"only_recorded", 1}, {"worse", 2}, {"better", 0}}), "/worse: expected a whole");
+  EXPECT_SAYS(complaint({{"flips", 2}, {"only_recorded", 1}, {"worse", 1}, {"better", 2}}),
+              "/better: expected a whole");
+  EXPECT_SAYS(complaint({{"flips", 2}, {"only_recorded", 1}, {"worse", 1}}), "better");
+}
+
 // A line of fresh scenes: in each arm so many successes more than on the board's.
 Json fresh_of(const Entry& entry, const std::map<std::string, int>& more, char nonce = '7') {
   Json line = replay_of(entry, "b", "another");

@@ -124,7 +124,7 @@ std::vector<Record> records() {
   run.cells = {short_hash, std::string(16, '1')};
   run.version = LGABENCH_VERSION;
   run.plugins = {{"method", "lga", "1", hash, "edit"}};
-  run.machine = {{"processor", "one"}, {"cores", 1}, {"memory_gib", 1}, {"system", "Debian"}};
+  run.machine = {{"processor", "one"}, {"instructions", "AVX2"}, {"cores", 1}, {"memory_gib", 1}, {"system", "Debian"}};
   run.shard = RunRecord::Shard{1, 2, 1};
   const auto read_line = [](auto read) { return [read](const Json& json) { read(JsonReader(json, "file")); }; };
   return {{"cell", to_json(cell), [](const Json& json) { read_cell(json, "file"); }},

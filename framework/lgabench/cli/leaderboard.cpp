@@ -19,6 +19,7 @@
 #include <lgabench/leaderboard/pages.hpp>
 #include <lgabench/leaderboard/recompute.hpp>
 #include <lgabench/leaderboard/scenes.hpp>
+#include <lgabench/leaderboard/supersede.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 
 namespace lgabench::cli {
@@ -58,10 +59,14 @@ void expect_board(const fs::path& board) {
         board.string()));
 }
 
-std::string replay_words(const Json& line) {
-  return fmt::format("{} of {} cells bit-identical, {} of {} episodes ended differently",
-                     line.at("bit_identical").get<int>(), line.at("cells").size(), line.at("flips").get<int>(),
-                     line.at("episodes").get<int>());
+std::string replay_words(const leaderboard::Entry& entry, const Json& line) {
+  std::string words = fmt::format("{} of {} cells bit-identical, {} of {} episodes ended differently",
+                                  line.at("bit_identical").get<int>(), line.at("cells").size(),
+                                  line.at("flips").get<int>(), line.at("episodes").get<int>());
+  if (line.at("bit_identical").get<std::size_t>() < line.at("cells").size())
+    words += fmt::format("; the entry: {}; here: {}", to_string(entry.processor()),
+                         to_string(leaderboard::processor_of(line)));
+  return words;
 }
 
 // The mean over arms, then the arms that differ.
@@ -94,13 +99,14 @@ int verify(LeaderboardArguments a) {
     entries.push_back(leaderboard::find_entry(a.board, a.what));
   else
     entries = leaderboard::entry_directories(a.board);
+  const leaderboard::Vouched vouched = leaderboard::read_vouched(a.board);
   bool differs = false;
   std::size_t unverified = 0;
   for (const fs::path& directory : entries) {
     leaderboard::Entry entry;
     std::optional<Json> line;
     try {
-      entry = leaderboard::read_entry(a.board, directory);
+      entry = leaderboard::read_entry(a.board, directory, &vouched);
       if (!entry.withdrawn.is_null()) continue;
       if (a.verify.fresh && !entry.score.is_null())
         to_stderr(
@@ -116,10 +122,14 @@ int verify(LeaderboardArguments a) {
     if (!line) return interrupted;
     leaderboard::add_verification(a.board, entry, *line);
     const bool passed = line->at("passed");
-    const std::string found = a.verify.fresh ? fresh_words(entry, *line) : replay_words(*line);
+    const std::string found = a.verify.fresh ? fresh_words(entry, *line) : replay_words(entry, *line);
     to_stdout("{} {}: {} (nonce {})\n", passed ? "agrees " : "DIFFERS", directory.string(), found,
               line->at("nonce").get<std::string>());
-    to_stderr("To make it count: lgabench leaderboard vouch {} {}\n", entry.id(), entry.verifications.size() + 1);
+    if (const std::size_t enough = leaderboard::enough_cells_of(entry);
+        !a.verify.fresh && line->at("cells").size() < enough)
+      to_stderr("Too few cells to count: nobody vouches for a replay of fewer than {} (--cells {})\n", enough, enough);
+    else
+      to_stderr("To make it count: lgabench leaderboard vouch {} {}\n", entry.id(), entry.verifications.size() + 1);
     differs = differs || !passed;
   }
   if (unverified > 0) to_stderr("{} of {} entries were not verified\n", unverified, entries.size());
@@ -150,9 +160,25 @@ int scenes(LeaderboardArguments a) {
   return without > 0 ? usage : ok;
 }
 
+std::string today() { return fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))); }
+
+int supersede(const LeaderboardArguments& a) {
+  if (a.what.empty() || a.reason.empty() || a.verify.by.empty())
+    throw InputError("leaderboard supersede: expected RUN, --reason WORDS, and --by NAME, who computed it");
+  expect_run(a.what);
+  const leaderboard::Superseded done = leaderboard::supersede(a.board, a.what, a.rows, a.verify.by, a.reason, today());
+  if (print_all(done.refused, "refused: ") != ok) return regression;
+  for (const std::string& entry : done.same) to_stdout("the same bits already: {}\n", entry);
+  for (const std::string& entry : done.entries) to_stdout("superseded {}\n", entry);
+  if (!done.entries.empty())
+    to_stderr("Next, for each: lgabench leaderboard verify ENTRY --by NAME; vouch; scenes; then build --board {}\n",
+              a.board.string());
+  return ok;
+}
+
 int withdraw(const LeaderboardArguments& a) {
   if (a.what.empty() || a.reason.empty()) throw InputError("leaderboard withdraw: expected ENTRY, and --reason WORDS");
-  leaderboard::withdraw(a.board, a.what, a.reason, fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))));
+  leaderboard::withdraw(a.board, a.what, a.reason, today());
   to_stdout("the entry is withdrawn; its files remain\n");
   return ok;
 }
@@ -166,10 +192,12 @@ int vouch(const LeaderboardArguments& a) {
   if (kind == "withdrawal") {
     words = fmt::format("withdrawal on {}: {}", when, line.at("reason").get<std::string>());
   } else {
-    const leaderboard::Entry entry = leaderboard::read_entry(a.board, leaderboard::find_entry(a.board, a.what));
+    const leaderboard::Vouched vouched = leaderboard::read_vouched(a.board);
+    const leaderboard::Entry entry =
+        leaderboard::read_entry(a.board, leaderboard::find_entry(a.board, a.what), &vouched);
     words = fmt::format("{} by {} on {}: {} {}", kind, line.at("by").get<std::string>(), when,
                         line.at("passed").get<bool>() ? "agrees," : "DIFFERS,",
-                        kind == "fresh" ? fresh_words(entry, line) : replay_words(line));
+                        kind == "fresh" ? fresh_words(entry, line) : replay_words(entry, line));
   }
   to_stdout("vouched for {}: {}\n", one_line(words), leaderboard::line_hash(line));
   return ok;
@@ -234,26 +262,25 @@ int build(const LeaderboardArguments& a) {
 void add_leaderboard(CLI::App& app, int& exit) {
   auto a = std::make_shared<LeaderboardArguments>();
   Verb verb(app, "leaderboard", "Add results to a leaderboard, check it, and make its pages");
-  const Words actions{"add", "verify", "vouch", "build", "check", "withdraw", "scenes"};
-  verb.option("ACTION add|verify|vouch|build|check|withdraw|scenes", a->action, "The action", required,
+  const Words actions{"add", "verify", "vouch", "build", "check", "withdraw", "supersede", "scenes"};
+  verb.option("ACTION add|verify|vouch|build|check|withdraw|supersede|scenes", a->action, "The action", required,
               one_of("action", actions));
-  verb.option(
-      "WHAT", a->what,
-      "add: a run's directory; verify, vouch, withdraw, scenes: an entry's directory or id (without one, verify takes "
-      "all entries and scenes all without pictures)");
+  verb.option("WHAT", a->what,
+              "add, supersede: a run's directory; verify, vouch, withdraw, scenes: an entry's directory or id (without "
+              "one, verify takes all entries and scenes all without pictures)");
   verb.option("LINE", a->line, "vouch: the number of a line in verifications.jsonl, or `withdrawn`");
   verb.option("--board DIR", a->board, "The leaderboard's directory", with_default);
-  verb.below("add and withdraw");
+  verb.below("add, withdraw and supersede");
   verb.option("--entry META.json", a->about,
               "add: a file that says who submits the rows, and where their source code is "
               "(docs/entering-the-leaderboard.md)");
-  verb.option("--rows ROW,...", a->rows, "add: only these rows of the run");
-  verb.option("--reason WORDS", a->reason, "withdraw: the reason");
+  verb.option("--rows ROW,...", a->rows, "add, supersede: only these rows of the run");
+  verb.option("--reason WORDS", a->reason, "withdraw, supersede: the reason");
   verb.below("verify and scenes");
   auto* cells = verb.option("--cells N", a->verify.cells, "verify: how many cells to play, chosen by a nonce drawn now",
                             CLI::Range(1, 1000000), with_default);
   verb.option("--fresh", a->verify.fresh, "verify: play on new test scenes, and compare success")->excludes(cells);
-  verb.option("--by NAME", a->verify.by, "verify: your name, as the one who verifies");
+  verb.option("--by NAME", a->verify.by, "verify, supersede: your name, as the one who computes the cells");
   verb.option("--jobs N", a->jobs, "verify, scenes: cells to compute at once (default: one per core)",
               CLI::Range(1, 4096));
   verb.option("--timeout SECONDS", a->verify.pool.timeout_s, "verify, scenes: seconds after which a cell is stopped",
@@ -277,6 +304,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
       "  build     writes the board's pages and tables, and entries of 0.4 and earlier in their shorter form\n"
       "  check     compares these with the entries; it only reads files\n"
       "  withdraw  takes an entry off the board; its files remain\n"
+      "  supersede takes new cells for entries from a run that computed them anew; the old files remain\n"
       "  scenes    plays two cells of an entry again and draws an episode of each\n"
       "Exit 1: refused, different, or a problem. Exit 2: none of these, but an entry was not verified or played.");
   verb->callback([a, actions, verb = verb.get(), &app, &exit] {
@@ -287,13 +315,14 @@ void add_leaderboard(CLI::App& app, int& exit) {
       throw InputError(fmt::format("leaderboard {}: \"{}\" is a word too many", a->action, a->line));
     a->verify.program = app.version();
     if (a->action != "add") expect_board(a->board);
-    exit = a->action == "verify"   ? verify(*a)
-           : a->action == "add"    ? add(*a)
-           : a->action == "vouch"  ? vouch(*a)
-           : a->action == "build"  ? build(*a)
-           : a->action == "check"  ? check(*a)
-           : a->action == "scenes" ? scenes(*a)
-                                   : withdraw(*a);
+    exit = a->action == "verify"      ? verify(*a)
+           : a->action == "add"       ? add(*a)
+           : a->action == "vouch"     ? vouch(*a)
+           : a->action == "build"     ? build(*a)
+           : a->action == "check"     ? check(*a)
+           : a->action == "scenes"    ? scenes(*a)
+           : a->action == "supersede" ? supersede(*a)
+                                      : withdraw(*a);
   });
 }
 

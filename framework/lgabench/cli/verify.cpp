@@ -86,6 +86,24 @@ std::string counts(const std::vector<Compared>& cells) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+// Those that the record names, of a merged run several, and this one.
+struct Processors {
+  std::vector<Processor> recorded;
+  Processor here;
+
+  bool are_one() const { return recorded.size() == 1 && to_string(recorded.front()) == to_string(here); }
+  bool owe(bool own_arithmetic) const {
+    return std::all_of(recorded.begin(), recorded.end(),
+                       [&](const Processor& one) { return owe_same_bits(one, here, own_arithmetic); });
+  }
+  // "the record: AMD EPYC, instructions not recorded; here: AMD EPYC with AVX2"
+  std::string text() const {
+    std::vector<std::string> words;
+    for (const Processor& one : recorded) words.push_back(to_string(one));
+    return fmt::format("the record: {}; here: {}", fmt::join(words, " and "), to_string(here));
+  }
+};
+
 using Agreements = std::vector<std::pair<std::string, report::CellAgreement>>;
 Agreements agreements(const std::vector<Compared>& cells) {
   Agreements all;
@@ -104,7 +122,7 @@ std::ptrdiff_t differing(const std::vector<Compared>& cells) {
 }
 
 // What the words of the cells' lines come to, where not all of them are "bit-identical".
-void print_other_bytes(const std::vector<Compared>& cells) {
+void print_other_bytes(const std::vector<Compared>& cells, const std::string& processors) {
   const std::ptrdiff_t others = other_bytes(cells);
   if (others == 0) return;
   int flips = 0, episodes = 0;
@@ -113,9 +131,9 @@ void print_other_bytes(const std::vector<Compared>& cells) {
     episodes += cell.agreement.episodes;
   }
   for (const report::PooledAgreement& pool : report::pooled(agreements(cells)))
-    to_stdout("{}: {} episodes succeeded only in the record, {} only here, over {} cells (McNemar {}){}\n",
-              pool.row.empty() ? "all rows" : pool.row, pool.only_recorded, pool.only_recomputed, pool.cells,
-              report::p_text(pool.p_holm), pool.differs() ? ": differs" : "");
+    to_stdout("{}: {} episodes succeeded only in the record, {} only here; {} cells are worse here, {} better ({}){}\n",
+              pool.row.empty() ? "all rows" : pool.row, pool.only_recorded, pool.only_recomputed, pool.worse,
+              pool.better, report::p_text(pool.p_holm), pool.differs() ? ": differs" : "");
   to_stdout("NOT bit-identical: {} of {} cells; {} of {} episodes that can be compared ended differently\n", others,
             cells.size(), flips, episodes);
   if (const auto excused = others - differing(cells))
@@ -123,6 +141,7 @@ void print_other_bytes(const std::vector<Compared>& cells) {
         "For {} of them the record names another build, processor or data: its own word, which proves nothing.\n"
         "To get the same bytes, verify with the recorded build on the recorded processor.\n",
         excused);
+  to_stdout("{}\n", processors);
   to_stdout("verdict: {}\n", to_string(report::verdict_of(agreements(cells))));
 }
 
@@ -137,7 +156,8 @@ Json by_plugin(const Json& build, const Cell& cell) {
 }
 
 void print_cells(const VerifyArguments& a, const Inventory& inventory, std::uint32_t seed, std::size_t of,
-                 const std::set<std::string>& why, const std::vector<Compared>& compared_cells) {
+                 const std::set<std::string>& why, const std::vector<Compared>& compared_cells,
+                 const Processors& processors) {
   if (a.json) {
     Json cells = Json::array();
     for (const Compared& cell : compared_cells)
@@ -151,6 +171,8 @@ void print_cells(const VerifyArguments& a, const Inventory& inventory, std::uint
                        {"cells", pool.cells},
                        {"only_recorded", pool.only_recorded},
                        {"only_recomputed", pool.only_recomputed},
+                       {"worse", pool.worse},
+                       {"better", pool.better},
                        {"p_holm", pool.p_holm}});
     to_stdout("{}\n", canonical({{"cells", cells},
                                  {"pooled", pools},
@@ -168,13 +190,17 @@ void print_cells(const VerifyArguments& a, const Inventory& inventory, std::uint
   }
   to_stdout("{} of {} finished cells computed again{}\n", compared_cells.size(), of,
             compared_cells.size() < of ? fmt::format(" (--sample {} --seed {})", a.sample, seed) : "");
-  to_stdout("{}\n", why.empty() ? "build, processor and data are those of the record" : "not as recorded:");
-  for (const std::string& line : why) to_stdout("  {}\n", line);
+  if (!why.empty())
+    to_stdout("not as recorded:\n  {}\n", fmt::join(why, "\n  "));
+  else if (processors.are_one())
+    to_stdout("build, processor and data are those of the record\n");
+  else
+    to_stdout("build and data are those of the record; {}: the same bytes are owed\n", processors.text());
   for (const Compared& cell : compared_cells)
     to_stdout("{:<16} {} {}{}\n", to_string(cell.agreement.agreement), cell.key, cell.title,
               cell.agreement.detail.empty() ? "" : ": " + cell.agreement.detail);
   if (compared_cells.size() > 1) to_stdout("{}\n", counts(compared_cells));
-  print_other_bytes(compared_cells);
+  print_other_bytes(compared_cells, processors.text());
   if (inventory.failed) to_stdout("{} cells failed when they were recorded: nothing to verify\n", inventory.failed);
   if (inventory.not_played) to_stdout("{} cells have not been played\n", inventory.not_played);
   if (!inventory.edited.empty()) to_stdout("{} cells were edited: not verified\n", inventory.edited.size());
@@ -191,6 +217,7 @@ int verify(const VerifyArguments& a) {
   const std::size_t of = inventory.cells.size();
   const std::vector<Recorded> cells = sampled(inventory.cells, a.all ? of : static_cast<std::size_t>(a.sample), seed);
   std::set<std::string> why;  // of all cells
+  Processors processors{record.processors(), this_processor()};
   std::vector<Compared> now;
   if (!cells.empty()) {
     std::vector<Cell> present;
@@ -198,20 +225,21 @@ int verify(const VerifyArguments& a) {
     for (std::size_t i = 0; i < cells.size(); ++i) present.push_back(with_present_data(cells[i], excuses[i]));
     RunPlan plan = plan_again(a.run, record, std::move(present), a.jobs, a.timeout_s);
     plan.command = "lgabench verify";
-    const std::optional<Recomputed> recomputed = recompute(plan, a.catalogue());
+    const Catalogue catalogue = a.catalogue();
+    const std::optional<Recomputed> recomputed = recompute(plan, catalogue);
     if (!recomputed) return interrupted;
 
-    const std::string there = record.processor(), here = recomputed->record.processor();
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const fs::path& directory = recomputed->cells[i];
-      if (there != here) excuses[i].insert(fmt::format("processor ({} there, {} here)", there, here));
+      if (!processors.owe(has_own_arithmetic(plan.cells[i], catalogue)))
+        excuses[i].insert("processor: " + processors.text());
       add_differences(excuses[i], by_plugin(cells[i].build, cells[i].cell),
                       by_plugin(read_cell_status(directory).build, cells[i].cell), "build: ");
       now.push_back(compared(cells[i], directory, !excuses[i].empty()));
       why.insert(excuses[i].begin(), excuses[i].end());
     }
   }
-  print_cells(a, inventory, seed, of, why, now);
+  print_cells(a, inventory, seed, of, why, now, processors);
   if (now.empty() || !inventory.edited.empty()) return regression;
   const report::Reproduction verdict = report::verdict_of(agreements(now));
   if (verdict == report::Reproduction::identical) return ok;
@@ -238,10 +266,13 @@ void add_verify(CLI::App& app, int& exit) {
   add_pool(verb, a->jobs, a->timeout_s);
   verb->footer(
       "Example: lgabench verify runs/q1 --sample 5\nverify calls each cell bit-identical, same outcomes, other "
-      "outcomes, or differs. With the recorded build, processor and data the bytes must be the same. If the record "
-      "names others, the verdict over all cells is \"agrees\" if at most 1 % of the episodes ended differently, and no "
-      "row has more of them in one direction than chance allows.\nExit 0: every cell is bit-identical. Exit 1: the "
-      "verdict is \"differs\", or a cell was edited. Exit 5: the verdict is \"agrees\": bytes differ, and the record "
+      "outcomes, or differs. With the recorded build and data the bytes must be the same on the recorded processor, "
+      "and with the methods that lgabench ships on every processor with FMA. If the record names others, the verdict "
+      "over all cells is \"agrees\" if at most 1 % of the episodes ended differently (of fewer than 1,000, ten but at "
+      "most 4 %), "
+      "and no row has more cells that are worse, or better, than chance allows.\n"
+      "Exit 0: every cell is bit-identical. Exit 1: the verdict is \"differs\", or a cell was edited. Exit 5: the "
+      "verdict is \"agrees\": bytes differ, and the record "
       "names another build, processor or data.");
   verb->callback([a, &exit] { exit = verify(*a); });
 }

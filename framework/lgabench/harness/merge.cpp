@@ -248,9 +248,10 @@ RunRecord merged_record(RunRecord all, const std::vector<Part>& parts, const Jso
     all.merged.push_back({{"command", one.command}, {"machine", one.machine}, {"started", one.started}});
     all.started = std::min(all.started, one.started);
     if (one.confinement == unconfined_run) all.confinement = unconfined_run;
-    if (one.processor() != all.processor())
+    if (!owe_same_bits(one.processor(), all.processor(), true))
       to_stderr("{}: computed on {}, {} on {}; the merged run may not be bit-identical to one machine's\n",
-                part.path().string(), one.processor(), parts.front().path().string(), all.processor());
+                part.path().string(), to_string(one.processor()), parts.front().path().string(),
+                to_string(all.processor()));
   }
   return all;
 }

@@ -6,11 +6,9 @@
 
 #include <cmath>
 #include <ctime>
-#include <fstream>
 #include <set>
 #include <thread>
 
-#include <lgabench/core/processor.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/harness/cell_plugins.hpp>
 #include <lgabench/host/confine.hpp>
@@ -18,19 +16,12 @@
 namespace lgabench {
 namespace {
 
-std::string processor() {
-  // Processors of virtual machines share a name: the instructions by which kernels are chosen tell them apart.
-  const std::string instructions = has_avx512() ? " with AVX-512" : has_avx2() ? " with AVX2" : "";
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);)
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2) + instructions;
-  return "unknown" + instructions;
-}
-
 Json machine() {
   utsname system{};
   ::uname(&system);
-  return {{"processor", processor()},
+  const Processor processor = this_processor();
+  return {{"processor", processor.name},
+          {"instructions", processor.instructions},
           {"cores", std::thread::hardware_concurrency()},
           {"memory_gib", std::round(machine_bytes() / (1 << 30) * 10) / 10},
           {"system", fmt::format("{} {}", system.sysname, system.release)}};

@@ -279,25 +279,37 @@ std::string run_hash(const std::vector<Cell>& cells, const Catalogue& catalogue)
   return sha256(all).substr(0, 8);
 }
 
-namespace {
-
-bool is_ours(const PluginInfo& method, const Catalogue& catalogue) {
+// By its bytes: an id can be anybody's.
+static bool is_shipped(const PluginInfo& plugin, const Catalogue& catalogue) {
   const fs::path shipped = fs::weakly_canonical(shipped_plugin_directory());
   return std::any_of(catalogue.plugins.begin(), catalogue.plugins.end(), [&](const PluginInfo& one) {
-    return one.sha256 == method.sha256 && fs::weakly_canonical(one.file).parent_path() == shipped;
+    return one.sha256 == plugin.sha256 && fs::weakly_canonical(one.file).parent_path() == shipped;
   });
 }
 
-}  // namespace
+// What is trained in the cell; null of a reference row.
+static const PluginInfo* trained_plugin(const Cell& cell, const Catalogue& catalogue) {
+  return cell.method.acts ? acting_plugin(cell, catalogue) : method_plugin(cell, catalogue);
+}
 
 bool is_strangers(const Cell& cell, const Catalogue& catalogue) {
-  const PluginInfo* const method = cell.method.acts ? acting_plugin(cell, catalogue) : method_plugin(cell, catalogue);
-  return method && !is_ours(*method, catalogue);
+  const PluginInfo* const method = trained_plugin(cell, catalogue);
+  return method && !is_shipped(*method, catalogue);
+}
+
+bool has_own_arithmetic(const Cell& cell, const Catalogue& catalogue) {
+  std::vector<PluginInfo> plugins = axis_plugins(cell, catalogue);
+  plugins.push_back(catalogue.find("engine", cell.engine));
+  if (const PluginInfo* method = trained_plugin(cell, catalogue)) plugins.push_back(*method);
+  if (const PluginInfo* perceiver = perceiver_plugin(cell, catalogue)) plugins.push_back(*perceiver);
+  return std::all_of(plugins.begin(), plugins.end(), [&](const PluginInfo& plugin) {
+    return is_shipped(plugin, catalogue) && plugin.fingerprint.find("LibTorch=none") != std::string::npos;
+  });
 }
 
 bool takes_unknown_time(const Cell& cell, const Catalogue& catalogue) {
   const PluginInfo* const method = method_plugin(cell, catalogue);
-  return is_strangers(cell, catalogue) || (method && !is_ours(*method, catalogue));
+  return is_strangers(cell, catalogue) || (method && !is_shipped(*method, catalogue));
 }
 
 std::string TimeSpent::text(int jobs) const {

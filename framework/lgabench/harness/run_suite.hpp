@@ -77,6 +77,10 @@ bool is_strangers(const Cell& cell, const Catalogue& catalogue);
 
 /// Whether a plugin that is not lgabench's own learns or selects in the cell: nobody has measured what it takes.
 bool takes_unknown_time(const Cell& cell, const Catalogue& catalogue);
+/// Whether nothing but the installation's own arithmetic computes the cell: no plugin that came from elsewhere, and no
+/// LibTorch, whose kernels are chosen by the processor. Such a cell has the same bits on every processor with fused
+/// multiply-add, owe_same_bits(). @throws as Catalogue::find().
+bool has_own_arithmetic(const Cell& cell, const Catalogue& catalogue);
 
 /// What lgabench-worker is told of a cell. `answers` holds the plan's (keep_answers), `scratch` is empty.
 CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& cell,

@@ -14,6 +14,7 @@
 #include <lgabench/leaderboard/revision.hpp>
 #include <lgabench/leaderboard/said.hpp>
 #include <lgabench/leaderboard/scenes.hpp>
+#include <lgabench/leaderboard/superseded.hpp>
 
 namespace lgabench::leaderboard {
 namespace {
@@ -48,7 +49,9 @@ std::string changed(const fs::path& file, const std::string& before) {
 
 using Files = std::map<std::string, std::string>;
 
-void compare_with(const Files& before, const fs::path& board, const CheckOptions& options, Checked& checked) {
+// `entries`: of the board, as far as they can be read.
+void compare_with(const Files& before, const fs::path& board, const std::vector<Entry>& entries,
+                  const CheckOptions& options, Checked& checked) {
   for (const char* file : maintainers_files) {
     const auto there = before.find(file);
     const bool is = fs::exists(fs::symlink_status(board / file)), was = there != before.end();
@@ -56,9 +59,19 @@ void compare_with(const Files& before, const fs::path& board, const CheckOptions
       checked.problems.push_back(
           fmt::format("{}: changed since {}: it is the maintainers' (--maintainer)", file, options.against));
   }
+  std::set<std::string> superseded;
+  try {
+    superseded = superseded_since(before, board, entries, options.against, checked.problems);
+  } catch (const InputError& e) {  // likewise below
+    checked.problems.emplace_back(e.what());
+  }
+  for (const std::string& place : superseded)
+    if (!options.maintainer)
+      checked.problems.push_back(
+          fmt::format("{}: superseded since {}: only the maintainers do that (--maintainer)", place, options.against));
   for (const auto& [file, bytes] : before) {
     try {
-      if (file.rfind("entries/", 0) != 0) continue;
+      if (file.rfind("entries/", 0) != 0 || superseded.count(fs::path(file).parent_path().string()) > 0) continue;
       if (const std::string what = changed(board / file, bytes); !what.empty())
         checked.problems.push_back(fmt::format("{}: {} since {}", file, what, options.against));
     } catch (const InputError& e) {  // a link, say, in the place of a file
@@ -153,7 +166,7 @@ void expect_frames(const fs::path& board, const std::vector<Entry>& entries, con
 // Nothing lies beside what a board has: git, a web server or a browser obeys some names.
 void expect_nothing_else(const fs::path& board, const std::vector<Entry>& entries, bool is_request, Checked& checked) {
   std::set<std::string> files{"README.md", "index.html", "leaderboard.csv"};
-  std::set<std::string> directories{"entries", "answers", scenes_directory};
+  std::set<std::string> directories{"entries", "answers", scenes_directory, superseded_directory};
   if (!is_request) directories.insert(adding_directory);
   files.insert(maintainers_files.begin(), maintainers_files.end());
   for (const Entry& entry : entries) files.insert(entry.setting.suite + ".html");
@@ -207,6 +220,18 @@ void expect_vouched(const std::vector<Entry>& entries, const Vouched& vouched, C
           fmt::format("{}: /{}: no line of this entry is vouched for", vouched_entries_file, entry));
 }
 
+// Instructions are inferred for entries alone that do not record them.
+void expect_inferred(const std::vector<Entry>& entries, const Vouched& vouched, Checked& checked) {
+  std::set<std::string> unknown;
+  for (const Entry& entry : entries)
+    if (const Processor processor = entry.processor(); processor.inferred || processor.instructions.empty())
+      unknown.insert(entry.id());
+  for (const auto& [id, ignored] : vouched.instructions)
+    if (unknown.count(id) == 0)
+      checked.problems.push_back(
+          fmt::format("{}: /{}: no entry of this id whose record lacks its instructions", instructions_file, id));
+}
+
 }  // namespace
 
 Checked check(const fs::path& board, const CheckOptions& options) {
@@ -230,8 +255,11 @@ Checked check(const fs::path& board, const CheckOptions& options) {
       if (options.told) options.told("read", checked.entries, directories.size(), "entries");
     }
     expect_vouched(entries, vouched, checked);
+    if (entries.size() == checked.entries) expect_inferred(entries, vouched, checked);
     if (entries.size() == checked.entries) {
       expect_no_other_answers(board, entries, is_request, checked);
+      for (std::string& problem : problems_of_superseded(board, entries))
+        checked.problems.push_back(std::move(problem));
       for (std::string& problem : problems_of_scenes(board, read_scenes(board, entries)))
         checked.problems.push_back(std::move(problem));
     }
@@ -242,7 +270,7 @@ Checked check(const fs::path& board, const CheckOptions& options) {
   expect_same_scenes(entries, checked);
   if (checked.problems.empty()) expect_current(board, entries, options, checked);
   if (!is_request) return checked;
-  compare_with(before, board, options, checked);
+  compare_with(before, board, entries, options, checked);
   if (checked.problems.empty()) expect_frames(board, entries, before, checked);
   return checked;
 }

@@ -20,8 +20,8 @@ struct Checked {
 };
 
 /// Files of the board that nobody else's request may change.
-inline constexpr std::array maintainers_files{vouched_file, vouched_entries_file, labels_file, tracks_file,
-                                              scenes_file};
+inline constexpr std::array maintainers_files{vouched_file, vouched_entries_file, instructions_file,
+                                              labels_file,  tracks_file,          scenes_file};
 
 struct CheckOptions {
   std::string against;      // a revision (files_at()) whose outcomes must not have changed; "": none
@@ -36,8 +36,8 @@ struct CheckOptions {
 /// were; that a preset and engine that an entry names are the installed ones, unless it was replayed; that the pages
 /// and the tables in documents are those of the entries; that nothing else lies in the board; and, with a revision,
 /// that the directories of its entries differ by appended verifications, evidence and a withdrawal at most (in either
-/// form of entry.json), and the maintainers' files not at all, that pages are around their tables as they were or as
-/// this build writes them, and that nothing is left of an `add` that was killed.
+/// form of entry.json), or by a superseding of the maintainers', and the maintainers' files not at all, that pages are
+/// around their tables as they were or as this build writes them, and that nothing is left of an `add` that was killed.
 /// Keeps on after a problem. @throws InputError as files_at().
 Checked check(const fs::path& board, const CheckOptions& options = {});
 

@@ -10,6 +10,7 @@
 #include <set>
 
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/leaderboard/said.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/plugin/loader.hpp>
@@ -23,6 +24,7 @@ Json json_of(const Entry& entry) {
             {"evidence", entry.evidence}};
   if (!entry.score.is_null()) json["score"] = entry.score;
   if (!entry.withdrawn.is_null()) json["withdrawn"] = entry.withdrawn;
+  if (!entry.supersedes.empty()) json["supersedes"] = entry.supersedes;
   return json;
 }
 
@@ -119,6 +121,15 @@ std::string Entry::rest_hash() const {
   return sha256(canonical(json));
 }
 
+Processor Entry::processor() const {
+  Processor own = read_processor(JsonReader(evidence.front().at("machine"), "entry.json", "/evidence/0/machine"));
+  if (own.instructions.empty() && !inferred_instructions.empty()) {
+    own.instructions = inferred_instructions;
+    own.inferred = true;
+  }
+  return own;
+}
+
 bool Entry::has_answers_as_submitted() const {
   return !identity.row.is_reference() && std::holds_alternative<FileAnswers>(identity.answers);
 }
@@ -158,25 +169,38 @@ std::string Entry::spec() const {
   return text;
 }
 
-std::vector<fs::path> entry_directories(const fs::path& board) {
-  std::vector<fs::path> all;
-  const fs::path root = board / "entries";
-  if (!fs::exists(root)) return all;
-  const auto below = [](const fs::path& directory) {
-    expect_plain_entries(directory);
-    std::vector<fs::path> names;
-    for (const auto& entry : fs::directory_iterator(directory)) {
-      if (!entry.is_directory())
-        throw InputError(fmt::format("{}: expected only directories here", entry.path().string()));
-      names.push_back(entry.path());
+// Directories so many levels below one of the board's, sorted; none where it is not there.
+static std::vector<fs::path> directories_below(const fs::path& board, const fs::path& root, int levels) {
+  std::vector<fs::path> all{root};
+  if (!fs::exists(board / root)) return {};
+  for (; levels > 0; --levels) {
+    std::vector<fs::path> below;
+    for (const fs::path& directory : all) {
+      expect_plain_entries(board / directory);
+      for (const auto& entry : fs::directory_iterator(board / directory)) {
+        if (!entry.is_directory())
+          throw InputError(fmt::format("{}: expected only directories here", entry.path().string()));
+        below.push_back(directory / entry.path().filename());
+      }
     }
-    std::sort(names.begin(), names.end());
-    return names;
-  };
-  for (const fs::path& method : below(root))
-    for (const fs::path& id : below(method))
-      for (const fs::path& setting : below(id)) all.push_back(fs::relative(setting, board));
+    all = std::move(below);
+  }
+  std::sort(all.begin(), all.end());
   return all;
+}
+
+std::vector<fs::path> entry_directories(const fs::path& board) { return directories_below(board, "entries", 3); }
+
+std::vector<fs::path> superseded_directories(const fs::path& board) {
+  return directories_below(board, superseded_directory, 2);
+}
+
+bool is_reason(const std::string& text) {
+  return !text.empty() && text.size() <= longest_reason && one_line(text) == text;
+}
+
+fs::path superseded_place(const std::string& id, const std::string& hash) {
+  return fs::path(superseded_directory) / id / hash.substr(0, 16);
 }
 
 std::vector<Entry> read_entries(const fs::path& board, const Told& told) {

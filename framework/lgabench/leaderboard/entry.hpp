@@ -1,5 +1,6 @@
 // An entry of the leaderboard: one row of a table, as files (docs/formats): entries/METHOD/ID/SUITE-PRESET/.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -12,6 +13,7 @@
 #include <lgabench/leaderboard/setting.hpp>
 #include <lgabench/leaderboard/vouched.hpp>
 #include <lgabench/record/outcome.hpp>
+#include <lgabench/record/processor.hpp>
 
 namespace lgabench::leaderboard {
 
@@ -58,6 +60,13 @@ constexpr std::size_t enough_cells = 30;
 
 /// Told how many of so many steps are done, in words: "read 3 of 352 entries".
 using Told = std::function<void(const char* what, std::size_t done, std::size_t of, const char* things)>;
+/// Whether a text may say why an entry took another's place: 1 to longest_reason bytes in one line.
+bool is_reason(const std::string& text);
+constexpr std::size_t longest_reason = 500;
+
+/// Where an entry lies once another has taken its place, relative to the board: superseded/ID/, and the first 16 digits
+/// of its Entry::hash().
+fs::path superseded_place(const std::string& id, const std::string& hash);
 
 /// How far an entry was checked.
 enum class Tier { recomputed, replayed, reproduced };
@@ -73,8 +82,10 @@ struct Entry {
   Json evidence = Json::array();       // who computed it with what
   Json score;                          // of its answers without a policy, score_of_answers(); null where it has none
   Json withdrawn;                      // {"when", "reason"}, or null
+  Json supersedes = Json::array();     // {"hash", "when", "reason"} of each entry whose place it took, the first first
   Json verifications = Json::array();  // lines of verifications.jsonl
   std::set<std::string> vouched;       // hashes of those of its lines that count; see vouched.hpp
+  std::string inferred_instructions;   // of its processor, by the maintainers; "" where they say nothing
 
   std::string id() const { return id_of(identity); }
   /// entries/METHOD/ID/SUITE-PRESET, relative to the board. @throws InputError for a method's id that could lead
@@ -86,7 +97,7 @@ struct Entry {
   /// canonical JSON. Nothing of that changes.
   std::string rest_hash() const;
   /// Of the machine that computed it first.
-  std::string processor() const { return evidence.front().at("machine").at("processor"); }
+  Processor processor() const;
   /// Whether the maintainers vouch for the line.
   bool counts(const Json& line) const { return !vouched.empty() && vouched.count(line_hash(line)) > 0; }
   bool is_withdrawn() const { return !withdrawn.is_null() && counts(withdrawn); }
@@ -113,9 +124,13 @@ Tier tier_of(const Entry& entry, const Json& line);
 Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched* vouched = nullptr);
 /// Of an entry's verifications: anybody may append some, and each is checked.
 constexpr std::size_t most_claims = 100;
+/// What an entry that another one took the place of says, where superseded_place() says.
+Entry read_superseded(const fs::path& board, const fs::path& directory);
 /// Directories of all entries, sorted, relative to the board. @throws InputError for what is neither file nor
 /// directory.
 std::vector<fs::path> entry_directories(const fs::path& board);
+/// Likewise of what entries took the place of: superseded/ID/HASH.
+std::vector<fs::path> superseded_directories(const fs::path& board);
 /// All entries, with what the board's vouched.json says. @throws InputError as read_entry().
 std::vector<Entry> read_entries(const fs::path& board, const Told& told = {});
 
@@ -125,12 +140,16 @@ std::vector<fs::path> other_answers(const fs::path& board, const std::vector<Ent
 /// What authors say of their rows, from a file. @throws InputError for what is not as docs/formats says.
 Json read_about(const fs::path& file);
 
+/// What an entry's directory may hold, and nothing else.
+inline constexpr std::array entry_files{"entry.json", "cells.jsonl", "verifications.jsonl"};
 /// entry.json and cells.jsonl, as text. Entries of 0.4 and earlier have the long form (said.hpp).
 std::string entry_text(const Entry& entry);
 std::string long_entry_text(const Entry& entry);
 std::string cells_text(const Entry& entry);
 /// Where entries are written before they get their place in a board.
 inline constexpr const char* adding_directory = ".adding";
+/// Where they lie when others have taken their place.
+inline constexpr const char* superseded_directory = "superseded";
 /// Held by whoever changes files of a board, which one process does at a time. What a killed one left is gone: its
 /// temporaries, and what it was about to add. @throws InputError where the board cannot be made or read.
 class BoardWriter {

@@ -1,11 +1,13 @@
 // An entry's files, read and checked into a value: what somebody sent is untrusted.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <ctime>
 
 #include <lgabench/abstraction/quality.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/leaderboard/answer_score.hpp>
 #include <lgabench/leaderboard/labels.hpp>
@@ -166,7 +168,7 @@ void expect_evidence(const JsonReader& evidence) {
     one.only({"by", "program", "version", "build", "plugins", "machine", "confinement", "started", "command", "data"});
     for (const char* text : {"by", "program", "version", "confinement", "command"}) one.at(text).string();
     expect_time(one.at("started"));
-    one.at("machine").at("processor").string();
+    read_processor(one.at("machine"));
     for (const JsonReader& plugin : one.at("plugins").elements())
       for (const char* text : {"kind", "id", "version", "sha256"}) plugin.at(text).string();
     for (const char* object : {"build", "data"})
@@ -181,21 +183,29 @@ std::vector<std::string> read_failures(const JsonReader& reader) {
   return words;
 }
 
-}  // namespace
+Json read_supersedes(const JsonReader& reader) {
+  if (reader.elements().empty()) reader.fail("at least one entry whose place this one took");
+  for (const JsonReader& one : reader.elements()) {
+    one.only({"hash", "when", "reason"});
+    expect_sha256(one.at("hash"));
+    expect_date(one.at("when"));
+    if (!is_reason(one.at("reason").string()))
+      one.at("reason").fail(fmt::format("1 to {} bytes in one line", longest_reason));
+  }
+  return reader.json();
+}
 
-Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched* vouched) {
-  const fs::path path = board / directory;
+// Wherever it lies.
+Entry read_files(const fs::path& path, const Vouched* vouched) {
   expect_plain_entries(path);
   for (const auto& file : fs::directory_iterator(path))
-    if (const std::string name = file.path().filename();
-        name != "entry.json" && name != "cells.jsonl" && name != "verifications.jsonl")
-      throw InputError(
-          fmt::format("{}: expected only entry.json, cells.jsonl and verifications.jsonl here", file.path().string()));
+    if (!contains(entry_files, file.path().filename()))
+      throw InputError(fmt::format("{}: expected only {} here", file.path().string(), fmt::join(entry_files, ", ")));
   const fs::path file = path / "entry.json";
   const std::string bytes = read_file(file, Links::refused, most_entry_bytes);
   const Json json = expanded(parse_json(bytes, file.string()), file.string());
   const JsonReader reader(json, file.string());
-  reader.only({"id", "identity", "preset", "about", "failures", "phi", "score", "evidence", "withdrawn"});
+  reader.only({"id", "identity", "preset", "about", "failures", "phi", "score", "evidence", "withdrawn", "supersedes"});
   Entry entry;
   entry.identity = read_identity(reader.at("identity"));
   entry.setting = read_setting(reader.at("preset"));
@@ -205,8 +215,6 @@ Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched
     reader.at("identity").at("scene_seed").fail("that of /preset");
   if (const std::string id = entry.id(); reader.at("id").string() != id)
     reader.at("id").fail(id + ", the hash of /identity");
-  if (const fs::path place = entry.place(); directory != place)
-    throw InputError(fmt::format("{}: expected at {}, by its identity", path.string(), place.string()));
   expect_about(reader.at("about"));
   entry.about = reader.at("about").json();
   entry.failures = read_failures(reader.at("failures"));
@@ -222,6 +230,7 @@ Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched
     for (const char* text : {"when", "reason"}) reader.at("withdrawn").at(text).string();
     entry.withdrawn = reader.at("withdrawn").json();
   }
+  if (reader.has("supersedes")) entry.supersedes = read_supersedes(reader.at("supersedes"));
   if (entry_text(entry) != bytes && long_entry_text(entry) != bytes)
     throw InputError(fmt::format("{}: not as it is written", file.string()));
 
@@ -240,6 +249,9 @@ Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched
     throw InputError(fmt::format("{}: expected {} cells, got {}; the next is {}", lines.string(), places.size(),
                                  entry.cells.size(), places[entry.cells.size()].text()));
   if (text != cells_text(entry)) throw InputError(fmt::format("{}: not as it is written", lines.string()));
+  if (vouched != nullptr)
+    if (const auto inferred = vouched->instructions.find(entry.id()); inferred != vouched->instructions.end())
+      entry.inferred_instructions = inferred->second;
   const std::string hash = entry.hash();
   if (vouched != nullptr) {
     const auto own = vouched->lines.find(hash);
@@ -260,6 +272,25 @@ Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched
     expect_verification(JsonReader(line, fmt::format("{}: line {}", checks.string(), ++number)), entry, hash);
     entry.verifications.push_back(line);
   }
+  return entry;
+}
+
+void expect_at(const fs::path& board, const fs::path& directory, const fs::path& place) {
+  if (directory != place)
+    throw InputError(fmt::format("{}: expected at {}, by what it is", (board / directory).string(), place.string()));
+}
+
+}  // namespace
+
+Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched* vouched) {
+  Entry entry = read_files(board / directory, vouched);
+  expect_at(board, directory, entry.place());
+  return entry;
+}
+
+Entry read_superseded(const fs::path& board, const fs::path& directory) {
+  Entry entry = read_files(board / directory, nullptr);
+  expect_at(board, directory, superseded_place(entry.id(), entry.hash()));
   return entry;
 }
 

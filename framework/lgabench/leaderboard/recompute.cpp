@@ -102,7 +102,7 @@ Json results_of(const PlayedCell& cell) {
   return json;
 }
 
-// A recorded line beside that of the same cell now. `excused`: on another processor.
+// A recorded line beside that of the same cell now. `excused`: the processors owe no equal bits.
 report::CellAgreement compared(const PlayedCell& before, const PlayedCell& now, bool excused) {
   report::CellAgreement cell;
   cell.episodes = before.episodes();
@@ -122,27 +122,29 @@ report::CellAgreement compared(const PlayedCell& before, const PlayedCell& now, 
   return cell;
 }
 
-// A replay's line, without who made it.
+// A replay's line, without who made it. `played`: the plan's cells, which became the lines of `now`.
 Json replayed(const Entry& entry, const std::vector<std::size_t>& chosen, const std::vector<PlayedCell>& now,
-              const std::string& processor) {
+              const std::vector<Cell>& played, const Catalogue& catalogue, const Processor& here) {
   std::vector<std::pair<std::string, report::CellAgreement>> cells;
-  int identical = 0, only_recorded = 0, only_recomputed = 0, episodes = 0;
+  int identical = 0, episodes = 0;
+  report::PooledAgreement all;
   Json keys = Json::array();
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const PlayedCell& before = entry.cells[chosen[i]];
     keys.push_back(before.key);
-    const report::CellAgreement& cell =
-        cells.emplace_back("", compared(before, now[i], processor != entry.processor())).second;
+    const bool owed = owe_same_bits(entry.processor(), here, has_own_arithmetic(played[i], catalogue));
+    const report::CellAgreement& cell = cells.emplace_back("", compared(before, now[i], !owed)).second;
     identical += cell.agreement == report::Agreement::identical;
-    only_recorded += cell.only_recorded;
-    only_recomputed += cell.only_recomputed;
+    all.add(cell);
     episodes += cell.episodes;
   }
   return {{"kind", "replay"},
           {"cells", keys},
           {"bit_identical", identical},
-          {"flips", only_recorded + only_recomputed},
-          {"only_recorded", only_recorded},
+          {"flips", all.only_recorded + all.only_recomputed},
+          {"only_recorded", all.only_recorded},
+          {"worse", all.worse},
+          {"better", all.better},
           {"episodes", episodes},
           {"passed", report::verdict_of(cells) != report::Reproduction::differs}};
 }
@@ -232,7 +234,8 @@ std::optional<Json> verification(const fs::path& board, const Entry& entry, cons
   const RunRecord& run = recomputed->record;
   Entry scratch = entry;  // whose Selections grow
   const std::vector<PlayedCell> now = lines_of(plan, *recomputed, scratch);
-  Json line = options.fresh ? played_fresh(entry, chosen, now, persons) : replayed(entry, chosen, now, run.processor());
+  Json line = options.fresh ? played_fresh(entry, chosen, now, persons)
+                            : replayed(entry, chosen, now, plan.cells, catalogue, run.processor());
   line.update({{"nonce", nonce},
                {"by", options.by},
                {"when", fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)))},

@@ -138,6 +138,15 @@ void expect_entries_of_scenes(const fs::path& board) {
   read_scenes_file(board, [&](const std::string& id) { return ids.count(id) > 0; });
 }
 
+void drop_scenes(const fs::path& board, const std::string& id) {
+  const fs::path file = board / scenes_file;
+  if (!fs::exists(fs::symlink_status(file))) return;
+  Json scenes = read_json(file, Links::refused);
+  if (!scenes.is_object() || scenes.erase(id) == 0) return;
+  write_file(file, scenes.dump(1) + "\n");
+  for (const char* which : {"best", "worst"}) fs::remove(board / scene_picture(id, which));
+}
+
 std::vector<std::string> problems_of_scenes(const fs::path& board, const BoardScenes& scenes) {
   std::vector<std::string> problems;
   std::set<fs::path> listed;

@@ -32,6 +32,8 @@ BoardScenes read_scenes(const fs::path& board, const std::vector<Entry>& entries
 
 /// @throws InputError where scenes.json names an entry that has no directory, before any entry is read.
 void expect_entries_of_scenes(const fs::path& board);
+/// Drops an entry's episodes from scenes.json, and their pictures.
+void drop_scenes(const fs::path& board, const std::string& id);
 
 /// A line for each picture that is missing, too large or not what scenes.json lists, and for each file that it does
 /// not list.

@@ -73,6 +73,18 @@ Json scenes_of(const Entry& entry, const BoardScenes& scenes) {
   return all;
 }
 
+// The entries whose place it took, the newest first.
+Json superseded_by(const Entry& entry) {
+  Json all = Json::array();
+  for (std::size_t i = entry.supersedes.size(); i-- > 0;) {
+    const Json& one = entry.supersedes[i];
+    all.push_back({{"when", one.at("when")},
+                   {"reason", one.at("reason")},
+                   {"place", superseded_place(entry.id(), one.at("hash")).string()}});
+  }
+  return all;
+}
+
 }  // namespace
 
 Json suite_data(const std::vector<NamedTable>& tables, const BoardScenes& scenes) {
@@ -109,10 +121,11 @@ Json suite_data(const std::vector<NamedTable>& tables, const BoardScenes& scenes
                          {"replayed", replayed_on(entry)},
                          {"scenes", scenes_of(entry, scenes)},
                          {"program", entry.evidence.front().at("program")},
-                         {"processor", entry.evidence.front().at("machine").at("processor")},
+                         {"processor", to_string(entry.processor())},
                          {"tier", to_string(entry.tier())},
                          {"failed", failed},
                          {"successes", success_bits(entry)}});
+      if (!entry.supersedes.empty()) entries.back()["supersedes"] = superseded_by(entry);
     }
   }
   return {{"settings", settings}, {"entries", entries}, {"tabs", tabs}};

@@ -17,13 +17,6 @@ namespace {
 
 constexpr std::size_t most_words = 200;  // of a text that a page may show
 
-void expect_date(const JsonReader& reader) {
-  const std::string text = reader.string();
-  std::tm time{};
-  const char* end = ::strptime(text.c_str(), "%Y-%m-%d", &time);
-  if (end == nullptr || *end != '\0' || text.size() != 10) reader.fail("a date, as 2026-01-31");
-}
-
 void expect_chosen(const JsonReader& line, const Entry& entry, const std::vector<std::size_t>& chosen) {
   std::vector<std::string> keys;
   int episodes = 0;
@@ -42,7 +35,13 @@ void expect_replay(const JsonReader& line, const Entry& entry, const std::string
   const long long identical = line.at("bit_identical").integer(0, cells);
   const long long flips =
       line.at("flips").integer(0, identical == cells ? 0 : line.at("episodes").json().get<long long>());
-  if (line.has("only_recorded")) line.at("only_recorded").integer(0, flips);
+  if (line.has("only_recorded")) {
+    const long long worse = line.at("only_recorded").integer(0, flips), changed = cells - identical;
+    if (line.has("worse") || line.has("better")) {
+      const long long taken = line.at("worse").integer(0, std::min(worse, changed));
+      line.at("better").integer(0, std::min(flips - worse, changed - taken));
+    }
+  }
   const bool passed = line.at("passed").boolean();
   const report::Reproduction verdict = replay_verdict(entry, line.json());
   if (passed && verdict == report::Reproduction::differs) line.at("passed").fail("false, by its counts");
@@ -106,26 +105,29 @@ double variance_of_persons(const std::string& letters, int persons, double of_an
 
 }  // namespace
 
+Processor processor_of(const Json& line) {
+  return read_processor(JsonReader(line.at("machine"), "verifications.jsonl", "/machine"));
+}
+
 report::Reproduction replay_verdict(const Entry& entry, const Json& line) {
-  const std::size_t identical = line.at("bit_identical");
-  report::CellAgreement all;
-  all.episodes = line.at("episodes");
-  if (identical == line.at("cells").size())
-    all.agreement = report::Agreement::identical;
-  else if (line.at("machine").at("processor") != entry.processor())
-    all.agreement = report::Agreement::other_outcomes;
+  if (line.at("bit_identical") == line.at("cells").size()) return report::Reproduction::identical;
+  if (owe_same_bits(entry.processor(), processor_of(line), false)) return report::Reproduction::differs;
   const int flips = line.at("flips");
-  // A line of 0.2.0 does not say which way episodes went: it keeps the rule of its time.
+  report::PooledAgreement all;
+  // A line of 0.2.0 does not say which way episodes went, and one before 0.5 not in which cells.
   all.only_recorded = line.value("only_recorded", flips / 2);
   all.only_recomputed = flips - all.only_recorded;
-  return report::verdict_of({{"", all}});
+  all.worse = line.value("worse", all.only_recorded);
+  all.better = line.value("better", all.only_recomputed);
+  all.p_holm = report::mcnemar(all.worse, all.better);
+  return report::verdict_of(flips, line.at("episodes"), {all});
 }
 
 void expect_verification(const JsonReader& line, const Entry& entry, const std::string& hash) {
-  line.only({"kind",     "nonce",       "cells",      "bit_identical",  "flips",         "only_recorded",
-             "episodes", "passed",      "by",         "when",           "program",       "build",
-             "machine",  "confinement", "scene_seed", "demonstrations", "training_seed", "difference",
-             "low",      "high",        "successes",  "persons"});
+  line.only({"kind",          "nonce",      "cells",    "bit_identical", "flips",      "only_recorded",
+             "worse",         "better",     "episodes", "passed",        "by",         "when",
+             "program",       "build",      "machine",  "confinement",   "scene_seed", "demonstrations",
+             "training_seed", "difference", "low",      "high",          "successes",  "persons"});
   const std::string kind = line.at("kind").string(), nonce = line.at("nonce").string();
   if (kind != "replay" && kind != "fresh") line.at("kind").fail("replay or fresh");
   if (nonce.size() != 32 || nonce.find_first_not_of("0123456789abcdef") != std::string::npos)
@@ -133,7 +135,7 @@ void expect_verification(const JsonReader& line, const Entry& entry, const std::
   for (const char* text : {"by", "program", "confinement"})
     if (line.at(text).string().size() > most_words) line.at(text).fail(fmt::format("at most {} bytes", most_words));
   expect_date(line.at("when"));
-  line.at("machine").at("processor").string();
+  read_processor(line.at("machine"));
   if (line.at("cells").strings().empty())
     line.at("cells").fail("at least one cell: without any, it says nothing about the entry");
   for (const char* count : {"bit_identical", "flips", "episodes"})
@@ -142,6 +144,13 @@ void expect_verification(const JsonReader& line, const Entry& entry, const std::
     expect_replay(line, entry, hash);
   else
     expect_fresh(line, entry);
+}
+
+void expect_date(const JsonReader& reader) {
+  const std::string text = reader.string();
+  std::tm time{};
+  const char* end = ::strptime(text.c_str(), "%Y-%m-%d", &time);
+  if (end == nullptr || *end != '\0' || text.size() != 10) reader.fail("a date, as 2026-01-31");
 }
 
 std::vector<std::size_t> fresh_cells(const Entry& entry, const std::string& nonce) {

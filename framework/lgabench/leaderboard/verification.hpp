@@ -8,12 +8,19 @@
 
 namespace lgabench::leaderboard {
 
+/// @throws InputError for what is no date, as 2026-01-31.
+void expect_date(const JsonReader& reader);
+
 /// A line as docs/formats has it: its cells are those that its nonce chooses, and its counts contradict neither each
 /// other nor the entry nor `passed`. `hash`: the entry's. @throws InputError with the place
 void expect_verification(const JsonReader& line, const Entry& entry, const std::string& hash);
 
-/// A replay's verdict, from its counts: "agrees" on another processor than the entry's first alone.
-/// @pre expect_verification()
+/// The processor that a line names. @pre expect_verification()
+Processor processor_of(const Json& line);
+
+/// A replay's verdict, from its counts: "agrees" on another kind of processor than the entry's first alone. This is the
+/// milder rule, since a reader need not have the method: verification() also demands the same bits on two kinds, where
+/// a method owes them. @pre expect_verification()
 report::Reproduction replay_verdict(const Entry& entry, const Json& line);
 
 /// Success on other test scenes minus that on the board's, with its 95 % interval.

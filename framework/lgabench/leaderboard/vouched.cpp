@@ -1,9 +1,11 @@
 #include <lgabench/leaderboard/vouched.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/leaderboard/entry.hpp>
 
@@ -24,7 +26,7 @@ const Json& line_of(const Entry& entry, const std::string& line) {
 
 // Whether the line is enough for an entry to count.
 void expect_enough(const Entry& entry, const Json& line, const std::string& which) {
-  const std::size_t enough = std::min(enough_cells, entry.cells.size());
+  const std::size_t enough = enough_cells_of(entry);
   if (line.value("kind", "") == "replay" && line.at("cells").size() < enough)
     throw InputError(fmt::format("{}: line {} is a replay of {} cells; expected {} or more: verify it with --cells {}",
                                  entry.place().string(), which, line.at("cells").size(), enough, enough));
@@ -35,7 +37,7 @@ void expect_enough(const Entry& entry, const Json& line, const std::string& whic
 
 // Calls it with each member of a file, an object; with none where there is no such file.
 template <typename Function>
-void for_each_hash(const fs::path& file, const Function& call) {
+void for_each_member(const fs::path& file, const Function& call) {
   if (!fs::exists(fs::symlink_status(file))) return;
   const Json json = read_json(file, Links::refused);
   const JsonReader reader(json, file.string());
@@ -45,17 +47,33 @@ void for_each_hash(const fs::path& file, const Function& call) {
 
 }  // namespace
 
+std::size_t enough_cells_of(const Entry& entry) { return std::min(enough_cells, entry.cells.size()); }
+
 std::string line_hash(const Json& line) { return sha256(canonical(line)); }
 
 Vouched read_vouched(const fs::path& board) {
   Vouched vouched;
-  for_each_hash(board / vouched_file, [&](const std::string& entry, const JsonReader& value) {
+  for_each_member(board / vouched_file, [&](const std::string& entry, const JsonReader& value) {
     const std::vector<std::string> lines = value.strings();
     vouched.lines[entry] = {lines.begin(), lines.end()};
   });
-  for_each_hash(board / vouched_entries_file,
-                [&](const std::string& entry, const JsonReader& value) { vouched.entries[entry] = value.string(); });
+  for_each_member(board / vouched_entries_file,
+                  [&](const std::string& entry, const JsonReader& value) { vouched.entries[entry] = value.string(); });
+  for_each_member(board / instructions_file, [&](const std::string& entry, const JsonReader& value) {
+    vouched.instructions[entry] = value.string();
+    if (!contains(vector_instructions, value.string()))
+      value.fail(fmt::format("one of {}", fmt::join(vector_instructions, ", ")));
+  });
   return vouched;
+}
+
+void forget(const fs::path& board, const Entry& entry) {
+  Vouched vouched = read_vouched(board);
+  if (vouched.lines.erase(entry.hash()) > 0) write_file(board / vouched_file, Json(vouched.lines).dump(1) + "\n");
+  if (vouched.entries.erase(entry.hash()) > 0)
+    write_file(board / vouched_entries_file, Json(vouched.entries).dump(1) + "\n");
+  if (vouched.instructions.erase(entry.id()) > 0)
+    write_file(board / instructions_file, Json(vouched.instructions).dump(1) + "\n");
 }
 
 Json vouch(const fs::path& board, const std::string& name, const std::string& which) {

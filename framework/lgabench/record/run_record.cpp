@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <lgabench/core/fields.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/record/layout.hpp>
@@ -18,6 +20,20 @@ std::string series(const std::string& version) { return version.substr(0, versio
 Json RunRecord::programs() const {
   Json all = build;
   for (const Plugin& plugin : plugins) all[plugin.kind + " " + plugin.id] = plugin.sha256;
+  return all;
+}
+
+Processor RunRecord::processor() const { return read_processor(JsonReader(machine, "run.json", "/machine")); }
+
+std::vector<Processor> RunRecord::processors() const {
+  std::vector<Processor> all{processor()};
+  if (merged.is_null()) return all;
+  for (const JsonReader& part : JsonReader(merged, "run.json", "/merged").elements()) {
+    const Processor one = read_processor(part.at("machine"));
+    if (std::none_of(all.begin(), all.end(),
+                     [&](const Processor& known) { return to_string(known) == to_string(one); }))
+      all.push_back(one);
+  }
   return all;
 }
 
@@ -69,7 +85,7 @@ void fields(RunRecord& record, Fields& field) {
   for (const auto& row : record.settings.items())
     if (reader && !row.value().is_object()) reader->at("settings").at(row.key()).fail("an object");
   field("machine", record.machine);
-  if (reader) reader->at("machine").at("processor").string();
+  if (reader) read_processor(reader->at("machine"));
   field("answers", record.answers, may_lack());
   field("about", record.about, when(!record.about.is_null()));
   field("claims", record.claims, when(!record.claims.is_null()));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <lgabench/core/json.hpp>
+#include <lgabench/record/processor.hpp>
 
 namespace lgabench {
 
@@ -37,14 +38,16 @@ struct RunRecord {
   Json build = Json::object();     // program or library -> SHA-256
   Json request = Json::object();   // the settings that led to the cells
   Json settings = Json::object();  // row -> options beside the plugin's defaults
-  Json machine = Json::object();   // with "processor", a text
+  Json machine = Json::object();   // with what read_processor() reads
   Json answers = Json::array();    // the files of answers/, and whose they are
   Json about = nullptr;            // of the user's own suite, what its file said of it (about_suite.hpp); null: none
   Json claims = nullptr;           // of the suite, as its file said when the run began (suite_claims.hpp); null: none
   std::optional<Shard> shard;      // none: the whole run, or more than one part of it
   Json merged = nullptr;           // of a merged run: command, machine and start of each part
 
-  std::string processor() const { return machine.at("processor"); }
+  Processor processor() const;
+  /// Of a merged run those of all parts, each once; else processor() alone.
+  std::vector<Processor> processors() const;
   /// The SHA-256 of each program that the record names, and of each plugin by its kind and id: "method lga".
   Json programs() const;
 };

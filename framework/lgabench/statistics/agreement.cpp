@@ -107,12 +107,22 @@ CellAgreement compare_cells(const fs::path& recorded, const fs::path& recomputed
         differences.push_back(std::move(where));
   if (differences.empty()) return {Agreement::identical, "", 0, 0, episodes_of(recorded)};
   const std::string where = fmt::format("from {}", fmt::join(differences, ", "));
-  if (!excused) return differing(where + ", though build, processor and data are the same");
+  if (!excused) return differing(where + ", though the same bytes are owed");
   if (differences.front().rfind(cell_file::selections, 0) == 0) return differing(where);
   CellAgreement outcomes = compare_outcomes(read_cell(recorded), read_cell(recomputed));
   outcomes.detail = outcomes.detail.empty() ? where : fmt::format("{}; {}", outcomes.detail, where);
   return outcomes;
 }
+
+void PooledAgreement::add(const CellAgreement& cell) {
+  ++cells;
+  only_recorded += cell.only_recorded;
+  only_recomputed += cell.only_recomputed;
+  worse += cell.only_recorded > cell.only_recomputed;
+  better += cell.only_recomputed > cell.only_recorded;
+}
+
+double most_flips(int episodes) { return std::max(.01 * episodes, std::min(.04 * episodes, 10.)); }
 
 std::vector<PooledAgreement> pooled(const std::vector<std::pair<std::string, CellAgreement>>& cells) {
   std::map<std::string, PooledAgreement> rows;
@@ -120,17 +130,13 @@ std::vector<PooledAgreement> pooled(const std::vector<std::pair<std::string, Cel
   for (const auto& [row, cell] : cells) {
     if (cell.only_recorded + cell.only_recomputed == 0) continue;
     rows[row].row = row;
-    for (PooledAgreement* one : {&rows[row], &total}) {
-      ++one->cells;
-      one->only_recorded += cell.only_recorded;
-      one->only_recomputed += cell.only_recomputed;
-    }
+    for (PooledAgreement* one : {&rows[row], &total}) one->add(cell);
   }
   std::vector<PooledAgreement> all;
   for (const auto& item : rows) all.push_back(item.second);
   if (all.size() > 1) all.push_back(total);
   std::vector<double> p;
-  for (const PooledAgreement& one : all) p.push_back(mcnemar(one.only_recorded, one.only_recomputed));
+  for (const PooledAgreement& one : all) p.push_back(mcnemar(one.worse, one.better));
   const std::vector<double> adjusted = holm(p);
   for (std::size_t i = 0; i < all.size(); ++i) all[i].p_holm = adjusted[i];
   return all;
@@ -145,9 +151,11 @@ Reproduction verdict_of(const std::vector<std::pair<std::string, CellAgreement>>
     flips += cell.only_recorded + cell.only_recomputed;
     episodes += cell.episodes;
   }
-  if (identical) return Reproduction::identical;
-  if (flips > most_flips * episodes) return Reproduction::differs;
-  const std::vector<PooledAgreement> rows = pooled(cells);
+  return identical ? Reproduction::identical : verdict_of(flips, episodes, pooled(cells));
+}
+
+Reproduction verdict_of(int flips, int episodes, const std::vector<PooledAgreement>& rows) {
+  if (flips > most_flips(episodes)) return Reproduction::differs;
   const bool chance = std::none_of(rows.begin(), rows.end(), [](const PooledAgreement& row) { return row.differs(); });
   return chance ? Reproduction::agrees : Reproduction::differs;
 }

@@ -181,7 +181,8 @@ function show(row) {
   const facts = [["options", code(entry.row)], ["authors", escaped(entry.authors.join(", "))], ["license", escaped(entry.license)],
     ["source", link(entry.source)], ["version", escaped(entry.version)], ["answers", code(entry.answers)],
     ["computed", `${escaped(entry.computed)}, by ${code(entry.program)}`], ["replayed", escaped(entry.replayed)],
-    ["processor", escaped(entry.processor)], ["tier", escaped(entry.tier)], ["id", code(entry.id)]];
+    ["processor", escaped(entry.processor)], ["tier", escaped(entry.tier)], ["id", code(entry.id)],
+    ...(entry.supersedes || []).map(({ when, reason, place }) => ["superseded", `${escaped(when)}: <a href="${escaped(place)}/cells.jsonl">the cells before</a>; ${escaped(reason)}`])];
   const body = document.createElement("div"), about = document.createElement("dl"), choice = $("outcome");
   about.innerHTML = facts.map(([name, value]) => `<dt>${name}</dt><dd>${value}</dd>`).join("");
   choice.innerHTML = setting.scenarios.map((one, i) => `<option${i === at ? " selected" : ""} value="${escaped(one.id)}">${escaped(one.title)}</option>`).join("");
