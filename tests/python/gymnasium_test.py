@@ -218,6 +218,7 @@ class Gymnasium(unittest.TestCase):
                 env.reset(options=options)
             with self.assertRaisesRegex(ValueError, "^index -?[0-9]+: expected 0 to 2147483647$"):
                 vector.reset(options=options)
+        env.reset(seed=0), vector.reset(seed=0)
         for seed in (-1, 2**64):
             for call in (lambda: env.reset(options={"scene_seed": seed}), lambda: vector.reset(options={"scene_seed": seed}),
                          lambda: lgabench.Environment("heart", ENGINE).reset("test", seed=seed)):

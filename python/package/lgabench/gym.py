@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Mapping, NoReturn, Optional, Sequence, SupportsFloat, Union
+from typing import Any, Callable, Mapping, NoReturn, Optional, Sequence, SupportsFloat, Union
 
 import gymnasium
 import numpy
@@ -46,24 +46,28 @@ class Instruction(spaces.Text):
     """The command's words. Gymnasium's Text is read from an AsyncVectorEnv's shared memory once, before there are any words."""
 
 
+_read_text: Callable[..., Any] = read_from_shared_memory.dispatch(spaces.Text)
+
+
 class _Words:
     """What lies in the memory at the moment, as a tuple has it; the copy that AsyncVectorEnv hands out is that tuple."""
 
-    def __init__(self, space: spaces.Text, memory: Any, n: int) -> None:
-        self._read = lambda: _read_text(space, memory, n)
+    def __init__(self, space: Instruction, memory: Any, n: int) -> None:
+        self._arguments = space, memory, n
 
     def __deepcopy__(self, memo: Any) -> tuple[str, ...]:
-        return tuple(self._read())
+        return tuple(_read_text(*self._arguments))
 
     def __getitem__(self, at: Any) -> Any:
-        return self._read()[at]
+        return _read_text(*self._arguments)[at]
 
     def __len__(self) -> int:
-        return len(self._read())
+        return self._arguments[2]
 
 
-_read_text = read_from_shared_memory.dispatch(spaces.Text)
-read_from_shared_memory.register(Instruction, _Words)
+@read_from_shared_memory.register(Instruction)
+def _read_words(space: Instruction, memory: Any, n: int = 1) -> Any:
+    return _Words(space, memory, n)
 
 
 def observation_space(scenario: Scenario) -> spaces.Dict:
