@@ -19,6 +19,7 @@ namespace {
 int exit_of(const report::RunResults& results, int otherwise) {
   name_other_version(results);
   for (const std::string& why : results.unreadable) to_stderr("left out: {}\n", why);
+  if (results.not_run > 0) to_stderr("{} cells of the run have not been played: not final\n", results.not_run);
   if (!results.unreadable.empty()) return usage;
   const bool none_finished =
       std::all_of(results.cells.begin(), results.cells.end(), [](const auto& cell) { return cell.failed; });
@@ -28,7 +29,6 @@ int exit_of(const report::RunResults& results, int otherwise) {
 }
 
 int verdict_of(const report::RunResults& results, const std::vector<report::Claim>& claims) {
-  if (results.not_run > 0) to_stderr("{} cells of the run have not been played: not final\n", results.not_run);
   if (results.record.smoke) to_stderr("Smoke or limited run: not for the leaderboard.\n");
   const bool reversed =
       std::any_of(claims.begin(), claims.end(), [](const auto& c) { return c.verdict == report::Verdict::reversed; });
