@@ -56,8 +56,9 @@ class ForLeRobot(gymnasium.ObservationWrapper):
 
 
 def environments(id, count, **settings):
-    """Makes environments for lerobot's rollout(), which counts a success only if one step ends an episode and begins the next."""
-    return gymnasium.vector.SyncVectorEnv([functools.partial(ForLeRobot, id, **settings)] * count,
+    """Makes environments for lerobot's rollout(), which counts a success only if one step ends an episode and begins the next.
+    They go on by `count` scenes, so that none plays what another did; rollout() needs seeds for that."""
+    return gymnasium.vector.SyncVectorEnv([functools.partial(ForLeRobot, id, stride=count, **settings)] * count,
                                           autoreset_mode=gymnasium.vector.AutoresetMode.SAME_STEP)
 
 

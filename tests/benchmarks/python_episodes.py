@@ -34,7 +34,7 @@ def vector(**arguments):
 
 def sync():
     mode = gymnasium.vector.AutoresetMode.SAME_STEP
-    return vector(vectorization_mode="sync", vector_kwargs={"autoreset_mode": mode})
+    return vector(vectorization_mode="sync", stride=N, vector_kwargs={"autoreset_mode": mode})
 
 
 print({"binding": binding, "threads": lambda: vector(threads=2), "sync": sync}[sys.argv[1]]())

@@ -74,13 +74,13 @@ class Looking(Pictures):
         """A target, at most two others and the pallet: of the answers 1 to 3 or 4 one is right in every scene."""
         exact = 0
         for mark in range(1, 5):
-            done = self.ask(f"I see it.\nFinal answer: {mark}", f"{mark}.jsonl")
+            done = self.ask(f"I see it.\nFinal answer: {mark}", f"{mark}.jsonl", expect=3 if mark == 4 else 0)  # not every scene has four
             row = json.loads(done.stdout)
             exact += row["exact_scenes"]
-            self.assertEqual((row["scenes"], row["arm"], row["names"]), (self.SCENES, "others_1", "looked"))
+            self.assertEqual((row["scenes"] + row["unanswered"], row["arm"], row["names"]), (self.SCENES, "others_1", "looked"))
             self.assertEqual(row["segments_right"], row["objects"])
-            self.assertEqual(row["unread"], done.stderr.count("no answer: "))
-            self.assertEqual(row["lm_queries"], self.SCENES + 2 * row["unread"], "asked three times where there is no such mark")
+            self.assertEqual(row["unanswered"], done.stderr.count("no answer: "))
+            self.assertEqual(row["lm_queries"], self.SCENES + 2 * row["unanswered"], "asked three times where there is no such mark")
             self.assertEqual(row["lm_tokens"], 11 * row["lm_queries"])
             self.assertEqual(len(self.server.pictures), row["lm_queries"])
         self.assertEqual(exact, self.SCENES)
@@ -105,22 +105,38 @@ class Looking(Pictures):
                            ("Final answer: 1\nFinal answer: 2", "one final answer, got a reply with two"),
                            ("Final answer: 9", "there is no mark 9, there are 1 to ")):
             with self.subTest(reply):
-                done = self.ask(reply, hashlib.sha256(reply.encode()).hexdigest())
-                row = json.loads(done.stdout)
-                self.assertEqual((row["unread"], row["exact_scenes"], row["scenes"]), (self.SCENES, 0, self.SCENES))
-                lines = [line for line in done.stderr.splitlines() if line.startswith("no answer: ")]
-                self.assertEqual(len(lines), self.SCENES)
-                self.assertIn("asked about a picture", lines[0])
-                self.assertIn(why, lines[0])
-                self.assertIn("(asked 3 times)", lines[0])
-                last = self.server.bodies[-1]["messages"]
+                done = self.ask(reply, hashlib.sha256(reply.encode()).hexdigest(), expect=3)
+                self.assertEqual(done.stdout, "")
+                self.assertEqual(len(self.server.pictures), 20, "and no more is asked")
+                self.assertIn("eyes, asked about a picture: none of its first 20 replies has an answer, lgabench stopped asking", done.stderr)
+                self.assertIn(why, done.stderr)
+                last = self.server.bodies[5]["messages"]
                 self.assertEqual([message["role"] for message in last], ["system", "user", "assistant", "user", "assistant", "user"])
                 self.assertIn(why, last[-1]["content"])
+
+    def test_a_scene_without_an_answer_is_named_and_in_no_mean(self):
+        said = {}  # by picture: those of every second scene cannot be read
+
+        def reply(request):
+            picture = request["messages"][1]["content"][1]["image_url"]["url"]
+            return "Final answer: 1" if said.setdefault(picture, len(said) % 2 == 0) else "I see a heart."
+
+        done = self.ask(reply, expect=3)
+        row = json.loads(done.stdout)
+        self.assertEqual((row["scenes"], row["unanswered"], row["lm_queries"]), (7, 7, 7 + 3 * 7))
+        self.assertLessEqual(row["exact_scenes"], row["scenes"])
+        lines = re.findall(r'^no answer: \w+, others_1, scene 0: "[^"]+", asked about a picture: .* \(asked 3 times\)$', done.stderr, re.M)
+        self.assertEqual(len(lines), 7, done.stderr)
+        self.assertIn("7 scenes have no answer and are in no mean", done.stderr)
+        again = self.score(["cassette:tape.jsonl"], expect=3)
+        self.assertEqual((again.stdout, again.stderr), (done.stdout, done.stderr))
+        self.assertIn("; 7 of 14 scenes have no answer\n",
+                      self.call(*self.ARGUMENTS[:-1], "--answers", "cassette:tape.jsonl", expect=3).stdout)
 
     def test_a_second_try_counts_and_costs(self):
         done = self.ask(lambda request: "Final answer: none" if len(request["messages"]) > 2 else "it is mark 1")
         row = json.loads(done.stdout)
-        self.assertEqual((row["unread"], row["lm_queries"]), (0, 2 * self.SCENES))
+        self.assertEqual((row["unanswered"], row["lm_queries"]), (0, 2 * self.SCENES))
 
     def test_a_model_that_takes_no_pictures_is_told_in_a_line(self):
         server = Server("")
@@ -158,7 +174,7 @@ class RealEyes(Pictures):
         if re.search("asked about a picture: status 4", done.stderr):
             self.skipTest("the model takes no pictures: " + done.stderr.splitlines()[-1])
         row = json.loads(done.stdout)
-        self.assertEqual(row["scenes"] + done.stderr.count("no answer: ") - row["unread"], Looking.SCENES)
+        self.assertEqual((row["scenes"] + row["unanswered"], done.stderr.count("no answer: ")), (Looking.SCENES, row["unanswered"]))
         if done.returncode == 0:
             self.assertEqual(self.score(["cassette:tape.jsonl"]).stdout, done.stdout)
 

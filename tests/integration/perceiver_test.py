@@ -91,7 +91,7 @@ class Perceivers(case.Case):
     def test_a_new_one_in_python(self):
         self.call("new-plugin", "my_eyes", "--kind", "perceiver", "--language", "python", "--directory", "eyes")
         report = json.loads(self.call("check-plugin", "eyes/my_eyes.py:MyEyes", "--python", PYTHON, "--json").stdout)
-        self.assertEqual({finding["state"] for finding in report["findings"]}, {"ok"}, report)
+        self.assertEqual(self.noted(report), {"names, tabletop", "names, mobile"}, "a new one gives all objects one name")
         self.run_names("my_eyes", "--no-reference", plugin="eyes/my_eyes.py:MyEyes")
         self.assertEqual({status["state"] for _, status in self.cells("run").values()}, {"ok"})
 
@@ -101,6 +101,11 @@ class Perceivers(case.Case):
         self.run_names("fixture_reader", "--no-reference", plugin="reader.py:Reader", expect=3)
         (_, status), = self.cells("run").values()
         self.assertIn("read() returned list, expected a lgabench_method.Observation", status["reason"])
+
+    def noted(self, report):
+        """Which checks have a note; none has a problem."""
+        self.assertEqual([one for one in report["findings"] if one["state"] == "problem"], [])
+        return {one["check"] for one in report["findings"] if one["state"] == "note"}
 
     def test_what_fails_costs_its_own_cell(self):
         for way, reason in (("throws", "fixture_reader (perceiver): its own failure"), ("crashes", "signal 11 (Segmentation fault)"),
@@ -120,7 +125,10 @@ class Perceivers(case.Case):
 
     def test_check_plugin_finds_it(self):
         good = json.loads(self.call("check-plugin", "fixture_reader.so", "--json").stdout)
-        self.assertEqual({finding["state"] for finding in good["findings"]}, {"ok"}, good)
+        self.assertEqual(self.noted(good), {"names, tabletop", "names, mobile"}, "it gives all objects one name")
+        said = self.call("check-plugin", "fixture_reader.so", "--environment", "tabletop").stdout
+        self.assertRegex(said, r"note +names, tabletop +0 of \d+ objects as the simulator names them; one name for all would be right for [1-9]")
+        self.assertTrue(said.endswith("\nno problem, 1 note: see above\n"), said)
         for way, check, detail in (("changes", "read, tabletop", "has other names"), ("unknown name", "read, tabletop", "of glass"),
                                    ("crashes", "process", "signal 11")):
             (self.dir / "way").write_text(way)

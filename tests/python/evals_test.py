@@ -89,8 +89,9 @@ class Suites(Case):
     def select(self, *words, scenes=SCENES):
         done = subprocess.run([PROGRAM, "select", "--score", "--json", "--scenes", str(scenes), *words], capture_output=True, text=True,
                               cwd=self.dir, env={**os.environ, "OPENAI_BASE_URL": f"http://127.0.0.1:{self.server.server_port}/v1"})
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return {row["asked"]: row for row in map(json.loads, done.stdout.splitlines()) if row["group"] == "all"}
+        rows = {row["asked"]: row for row in map(json.loads, done.stdout.splitlines()) if row["group"] == "all"}
+        self.assertEqual(done.returncode, 3 if any(row["unanswered"] for row in rows.values()) else 0, done.stderr)
+        return rows
 
     def of_the_program(self, suite, scenes=SCENES):
         """Form -> what it prints where it asks the server itself."""
@@ -106,7 +107,10 @@ class Evals(Suites):
                 row = rows[form]
                 self.assertEqual(evals.score(replies(evals.questions(suite, form)), SCENES),
                                  {"scenes_exact": row["exact_scenes"] / row["scenes"], "exact_sets": row["exact_sets"] / row["commands"],
-                                  "precision": row["right"] / row["kept"], "recall": row["right"] / row["meant"]})
+                                  "precision": row["right"] / row["kept"], "recall": row["right"] / row["meant"],
+                                  "answered": row["commands"] / (row["commands"] + row["unanswered"])})
+        self.assertEqual([(one["commands"], one["unanswered"]) for one in map(self.of_the_program(self.suite()).get, evals.FORMS)],
+                         [(2, 0), (1, 1)], "a meaning that cannot be read is in no mean")
 
     def test_the_questions_are_those_that_it_asks_and_hold_no_truth(self):
         for make, counts in (self.suite, (2 * 112, 2)), (self.fetch, (2 * 138, 1 + 138)):
@@ -309,7 +313,7 @@ class Harnesses(Suites):
 
     def shares(self, row):
         return [row["exact_scenes"] / row["scenes"], row["exact_sets"] / row["commands"], row["right"] / row["kept"],
-                row["right"] / row["meant"]]
+                row["right"] / row["meant"], row["commands"] / (row["commands"] + row["unanswered"])]
 
     @unittest.skipUnless(installed("inspect_ai"), "not installed: inspect_ai, or no LGABENCH_FULL")
     def test_inspect_finds_the_tasks_by_their_entry_point(self):

@@ -101,7 +101,7 @@ class Gymnasium(unittest.TestCase):
         for split in ("train", "test"):
             for threads in (1, 2, 7):
                 mode = {"split": split, "reward_mode": "dense" if threads == 2 else "sparse"}
-                sync = make_vec("heart", 4, vectorization_mode="sync", vector_kwargs=same_step, **mode)
+                sync = make_vec("heart", 4, vectorization_mode="sync", stride=4, vector_kwargs=same_step, **mode)
                 vector = make_vec("heart", 4, threads=threads, **mode)
                 vector.action_space.seed(0)
                 self.assertEqual(sync.observation_space, vector.observation_space)
@@ -117,7 +117,7 @@ class Gymnasium(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "every second step"):
             make_vec("heart", 2, autoreset_mode="NextStep")
         off = {"autoreset_mode": gymnasium.vector.AutoresetMode.DISABLED}
-        sync, vector = make_vec("heart", 3, vectorization_mode="sync", vector_kwargs=off), make_vec("heart", 3, **off)
+        sync, vector = make_vec("heart", 3, vectorization_mode="sync", stride=3, vector_kwargs=off), make_vec("heart", 3, **off)
         self.same(sync.reset(seed=2), vector.reset(seed=2))
         actions = vector.unwrapped.expert_actions()
         self.same(sync.step(actions), vector.step(actions))
@@ -125,6 +125,78 @@ class Gymnasium(unittest.TestCase):
         self.same(sync.reset(options={"reset_mask": mask}), vector.reset(options={"reset_mask": mask}))
         with self.assertRaisesRegex(RuntimeError, r"reset\(\) of environments \[1\]"):
             vector.step(actions)
+
+    def scenes(self, split, count):
+        """Of scene 0, 1, ... of a split."""
+        with lgabench.Environment("heart", ENGINE) as env:
+            return [env.reset(split, index) and env.scene_hash for index in range(count)]
+
+    def test_a_vector_plays_each_scene_once(self):
+        """Batch k of n environments plays scenes kn to kn + n - 1, whoever steps and begins them."""
+        n, batches = 3, 4
+        same_step = {"autoreset_mode": gymnasium.vector.AutoresetMode.SAME_STEP}
+        off = {"autoreset_mode": gymnasium.vector.AutoresetMode.DISABLED}
+        for split in ("dev", "test"):
+            scenes = self.scenes(split, n * batches)
+            self.assertEqual(len(set(scenes)), n * batches)
+            for mode, seeds in (("threads", (None, 0)), ("sync", (0,)), ("async", (0,))):
+                own = {} if mode == "threads" else {"vectorization_mode": mode, "stride": n}
+                for seed in seeds:
+                    with self.subTest(mode, split=split, seed=seed, autoreset="SameStep"):
+                        vector = make_vec("heart", n, split=split, **own, **({"vector_kwargs": same_step} if own else same_step))
+                        played = list(vector.reset(seed=seed)[1]["scene"])
+                        for _ in range(batches - 1):
+                            played += list(vector.step(vector.action_space.sample())[4]["scene"])
+                        self.assertEqual(played, scenes)
+                        vector.close()
+                    with self.subTest(mode, split=split, seed=seed, autoreset="Disabled"):
+                        vector = make_vec("heart", n, split=split, **own, **({"vector_kwargs": off} if own else off))
+                        played = list(vector.reset(seed=seed)[1]["scene"])
+                        for _ in range(batches - 1):
+                            vector.step(vector.action_space.sample())
+                            for mask in (numpy.array([i != 1 for i in range(n)]), numpy.array([i == 1 for i in range(n)])):
+                                info = vector.reset(options={"reset_mask": mask})[1]
+                                self.assertEqual(list(info["_scene"]), list(mask))
+                                played += list(info["scene"][mask])
+                        self.assertEqual(sorted(played), sorted(scenes))
+                        vector.close()
+
+    def test_what_options_name_moves_nothing(self):
+        """Else all environments of a vector would go on with one scene."""
+        scenes = self.scenes("test", 8)
+        vector = make_vec("heart", 2, split="test")
+        self.assertEqual(list(vector.reset()[1]["scene"]), scenes[:2])
+        self.assertEqual(list(vector.reset(options={"index": 7})[1]["scene"]), [scenes[7]] * 2)
+        self.assertEqual(list(vector.reset()[1]["scene"]), scenes[2:4])
+
+    def test_a_stride_needs_a_seed(self):
+        with self.assertRaisesRegex(ValueError, "^stride 0: expected 1 or more$"):
+            make("heart", split="test", stride=0)
+        env = make("heart", split="test", stride=4)
+        with self.assertRaisesRegex(ValueError, r"^reset: expected a seed: with stride 4 environment i of several begins at seed \+ i$"):
+            env.reset()
+        self.assertEqual([env.reset(seed=1)[1]["scene"], env.reset()[1]["scene"]], self.scenes("test", 6)[1::4])
+        make("heart", stride=4).reset()  # split train draws
+
+    def test_processes_are_told_the_words(self):
+        """Shared memory holds texts too, which Gymnasium reads but once."""
+        same_step = {"autoreset_mode": gymnasium.vector.AutoresetMode.SAME_STEP}
+        for scenario in EXAMPLES if FULL else EXAMPLES[:1]:
+            for shared in (True, False):
+                with self.subTest(scenario, shared_memory=shared):
+                    sync = make_vec(scenario, 2, vectorization_mode="sync", split="test", stride=2, vector_kwargs=same_step)
+                    vector = make_vec(scenario, 2, vectorization_mode="async", split="test", stride=2,
+                                      vector_kwargs={"shared_memory": shared, **same_step})
+                    for one, other in ((sync.reset(seed=0), vector.reset(seed=0)),
+                                       (sync.step(sync.action_space.sample()), vector.step(vector.action_space.sample()))):
+                        self.assertTrue(all(one[0]["instruction"]))
+                        self.same(one[0], other[0])
+                        self.assertIn(other[0], vector.observation_space)
+                    vector.close()
+        bare = make_vec("heart", 2, vectorization_mode="async", split="test", vector_kwargs={"copy": False})
+        words = bare.reset(seed=0)[0]["instruction"]
+        self.assertEqual((len(words), words[0], list(words)), (2, "Bring me the heart.", ["Bring me the heart."] * 2))
+        bare.close()
 
     def test_a_scenario_of_ones_own(self):
         path = pathlib.Path(registration._core.data_directory()) / "scenarios/heart.json"
@@ -146,6 +218,7 @@ class Gymnasium(unittest.TestCase):
                 env.reset(options=options)
             with self.assertRaisesRegex(ValueError, "^index -?[0-9]+: expected 0 to 2147483647$"):
                 vector.reset(options=options)
+        env.reset(seed=0), vector.reset(seed=0)
         for seed in (-1, 2**64):
             for call in (lambda: env.reset(options={"scene_seed": seed}), lambda: vector.reset(options={"scene_seed": seed}),
                          lambda: lgabench.Environment("heart", ENGINE).reset("test", seed=seed)):

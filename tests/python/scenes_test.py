@@ -227,6 +227,8 @@ class Scenes(unittest.TestCase):
         self.assertEqual((none.success, none.failures["method_error"]), (0, 3))
         with self.assertRaisesRegex(ValueError, "rotation of norm"):
             lgabench.evaluate(lambda seen, utterance: [.5, 0, 0, 0, 0, 0] * 2, env, 1, strict=True)
+        with self.assertRaisesRegex(ValueError, "rotation of norm"):  # no action at all was played
+            lgabench.evaluate(lambda seen, utterance: [.5, 0, 0, 0, 0, 0] * 2, env, 3)
         nowhere = lgabench.evaluate(lambda seen, utterance: [.26, .49, 0, 0, 0, 1] * 2, env, 5)
         self.assertEqual((nowhere.success, nowhere.failures), (0, {"missed_object": 5}))
 

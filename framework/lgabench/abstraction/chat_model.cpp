@@ -221,13 +221,23 @@ template <class Read>
 auto ChatLanguageModel::asked_until_read(Request request, const PromptTemplate& prompt, const Command& command,
                                          const std::string& asks, const std::string& wanted, Read&& read)
     -> decltype(read(std::string())) {
+  Reading& of_form = reading_[prompt.version()];
   for (int attempt = 1;; ++attempt) {
     expect_replies({request}, command, asks);
     const std::string said = counted(request).text;
     try {
-      return read(said);
+      const auto answer = read(said);
+      of_form.any = true;
+      return answer;
     } catch (const MethodError& e) {
-      if (attempt == most_tries) return {};
+      if (++of_form.unread >= hopeless_from && !of_form.any && client_ && options_.expects_read)
+        throw Hopeless(
+            fmt::format("{}, asked about {}: none of its first {} replies has an answer, lgabench stopped asking; the "
+                        "last: {}",
+                        asked_model_.name, request.candidate, of_form.unread, e.what()));
+      if (attempt == most_tries)
+        throw Unread(fmt::format("\"{}\", asked about {}: {} (asked {} times)", command.utterance, request.candidate,
+                                 e.what(), most_tries));
       Json& messages = request.json["messages"];
       messages.push_back({{"role", "assistant"}, {"content", said}});
       messages.push_back(
@@ -237,18 +247,32 @@ auto ChatLanguageModel::asked_until_read(Request request, const PromptTemplate& 
   }
 }
 
+template <class Ask>
+auto ChatLanguageModel::read_or_empty(Ask&& ask) const -> decltype(ask()) {
+  try {
+    return ask();
+  } catch (const Unread&) {
+    if (options_.expects_read) throw;
+    return {};
+  }
+}
+
 Meaning ChatLanguageModel::mean(const Command& command, const FeatureSpace& space) {
-  return asked_until_read(request_in_one(of_meaning_, messages_of(of_meaning_.fill(command, space)), "what it means"),
-                          of_meaning_, command, asks_about(command, space), json_again,
-                          [&space](const std::string& said) { return meaning_in(said, space); });
+  return read_or_empty([&] {
+    return asked_until_read(request_in_one(of_meaning_, messages_of(of_meaning_.fill(command, space)), "what it means"),
+                            of_meaning_, command, asks_about(command, space), json_again,
+                            [&space](const std::string& said) { return meaning_in(said, space); });
+  });
 }
 
 std::vector<Hypothesis> ChatLanguageModel::hypotheses(const Command& command, const FeatureSpace& space) {
   const Request first =
       request_in_one(of_hypotheses_, messages_of(of_hypotheses_.fill(command, space)), "what it leaves unsaid");
   if (!client_ && !cassette_.find(first.key)) return {};
-  return asked_until_read(first, of_hypotheses_, command, asks_about(command, space), json_again,
-                          [&space](const std::string& said) { return hypotheses_in(said, space); });
+  return read_or_empty([&] {
+    return asked_until_read(first, of_hypotheses_, command, asks_about(command, space), json_again,
+                            [&space](const std::string& said) { return hypotheses_in(said, space); });
+  });
 }
 
 std::vector<int> ChatLanguageModel::look(const Command& command, const std::string& png, int marks) {
@@ -259,21 +283,9 @@ std::vector<int> ChatLanguageModel::look(const Command& command, const std::stri
                             {{"type", "image_url"}, {"image_url", {{"url", "sha256:" + sha256(png)}}}}};
   Request request = request_in_one(prompt, messages, "a picture");
   request.picture = png;
-  std::string why;
-  const auto named =
-      asked_until_read(std::move(request), prompt, command, "select --suite SUITE --score --names looked",
-                       "the line \"Final answer:\" with the numbers again",
-                       [&](const std::string& said) -> std::optional<std::vector<int>> {
-                         try {
-                           return final_marks(said, marks);
-                         } catch (const MethodError& e) {
-                           why = e.what();
-                           throw;
-                         }
-                       });
-  if (!named)
-    throw Unread(fmt::format("\"{}\", asked about a picture: {} (asked {} times)", command.utterance, why, most_tries));
-  return *named;
+  return asked_until_read(std::move(request), prompt, command, "select --suite SUITE --score --names looked",
+                          "the line \"Final answer:\" with the numbers again",
+                          [marks](const std::string& said) { return final_marks(said, marks); });
 }
 
 }  // namespace lgabench

@@ -1,6 +1,7 @@
 // A language model that is asked now, or was earlier: one chat request for each question.
 #pragma once
 #include <functional>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -32,6 +33,11 @@ struct Unread : MethodError {
   using MethodError::MethodError;
 };
 
+/// None of the first 20 replies to questions of one form can be read, and no more such questions go to the server.
+struct Hopeless : MethodError {
+  using MethodError::MethodError;
+};
+
 /// A server of chat completions. complete() may be called from several threads at once.
 class ChatClient {
  public:
@@ -50,6 +56,8 @@ struct ChatOptions {
   std::function<void(const std::string&)> waiting = {};   // told, in a line, what the model waits for; likewise
   std::function<void(bool begins)> in_line = {};          // told where the model waits for another process that asks
   bool any_served = false;                                // as of Cassette::add()
+  bool expects_read =
+      false;  // mean() and hypotheses() throw Unread, not empty; 20 replies that cannot be read are enough
 };
 
 /// The messages of a request, made of a prompt.
@@ -72,13 +80,14 @@ class ChatLanguageModel : public LanguageModel {
   std::vector<bool> answer(const Command& command, const FeatureSpace& space,
                            const std::vector<Question>& questions) override;
   /// Asks one question. If the reply's meaning cannot be read, the model is told why and asked again, twice at most;
-  /// each asking is a query. @throws as answer().
+  /// each asking is a query. @throws as answer(), and Unread and Hopeless where the options expect that replies are
+  /// read.
   Meaning mean(const Command& command, const FeatureSpace& space) override;
   /// Likewise. Empty, at no cost, where nobody can be asked: there is no client, and the cassette lacks the reply.
   std::vector<Hypothesis> hypotheses(const Command& command, const FeatureSpace& space) override;
   /// Which of the numbers 1 to `marks` in a picture, PNG, the command could mean, in one question (marked()). The
-  /// server gets the picture; key and cassette hold its SHA-256. @throws as answer(), and Unread where no reply names
-  /// marks that there are.
+  /// server gets the picture; key and cassette hold its SHA-256. @throws as mean(), and always Unread where no reply
+  /// names marks that there are.
   std::vector<int> look(const Command& command, const std::string& png, int marks);
   /// How many of these questions would go to a server: those without a reply in the cassette.
   int open_questions(const Command& command, const FeatureSpace& space, const std::vector<Question>& questions) const;
@@ -103,10 +112,14 @@ class ChatLanguageModel : public LanguageModel {
   /// `asks`: a command line's words before --answers that ask for these.
   void expect_replies(const std::vector<Request>& requests, const Command& command, const std::string& asks);
   ChatReply counted(const Request& request);
-  /// A question whose reply `read` reads; told what is wrong and asked again where it throws, to give `wanted`.
+  /// A question whose reply `read` reads; told what is wrong and asked again where it throws, to give `wanted`. @throws
+  /// Unread after the last try, Hopeless.
   template <class Read>
   auto asked_until_read(Request request, const PromptTemplate& prompt, const Command& command, const std::string& asks,
                         const std::string& wanted, Read&& read) -> decltype(read(std::string()));
+  /// What `ask` returns; nothing in place of Unread, unless the options expect that replies are read.
+  template <class Ask>
+  auto read_or_empty(Ask&& ask) const -> decltype(ask());
   Request request_in_one(const PromptTemplate& prompt, const Json& messages, const std::string& about) const;
 
   Cassette& cassette_;
@@ -115,6 +128,11 @@ class ChatLanguageModel : public LanguageModel {
   AskedModel asked_model_;
   PromptTemplate template_{"selection.txt"}, of_meaning_{"meaning.txt"}, of_hypotheses_{"hypotheses.txt"};
   int asked_ = 0, without_answer_ = 0;
+  struct Reading {
+    bool any = false;
+    int unread = 0;  // replies
+  };
+  std::map<std::string, Reading> reading_;  // by the version of the form's prompt
   SelectionCost cost_;
   std::set<std::string> served_;  // names of whose replies were counted
 };

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace lgabench {
 namespace {
 
@@ -46,6 +48,22 @@ std::string meaning_text(const Meaning& meaning, const FeatureSpace& space) {
       break;
   }
   return one("that comes first of ") + fmt::format("{}", fmt::join(which.order, ", "));
+}
+
+std::string empty_text(const Selection& selection) {
+  if (selection.provenance == Provenance::none || !selection.empty()) return "";
+  const bool of_target = selection.target.empty();
+  const std::vector<FeatureSet> sets =
+      of_target ? selection.target.sets : std::vector<FeatureSet>{static_cast<const FeatureSet&>(*selection.second)};
+  const auto none = [&sets](std::vector<std::string> FeatureSet::*kind) {
+    return std::all_of(sets.begin(), sets.end(), [kind](const FeatureSet& set) { return (set.*kind).empty(); });
+  };
+  const bool types = none(&FeatureSet::object_types), textures = none(&FeatureSet::textures);
+  return fmt::format("{} has {}", of_target ? "the target" : selection.second->role,
+                     types && textures ? "no object type and no texture"
+                     : types           ? "no object type"
+                     : textures        ? "no texture"
+                                       : "no set with both an object type and a texture");
 }
 
 std::string selection_text(const Selection& selection, const FeatureSpace& space) {

@@ -11,7 +11,11 @@ namespace lgabench {
 /// section 5: what LGA-L is told).
 std::string selection_text(const Selection& selection, const FeatureSpace& space);
 
-/// A meaning alone, likewise.
+/// Why the Selection keeps no object in any scene: "the target has no texture", "avoid has no object type"; "" where it
+/// may keep some, or nothing was selected.
+std::string empty_text(const Selection& selection);
+
+/// A meaning alone, in words as selection_text() has them.
 std::string meaning_text(const Meaning& meaning, const FeatureSpace& space);
 
 }  // namespace lgabench

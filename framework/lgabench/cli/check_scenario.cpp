@@ -67,6 +67,13 @@ int with_near_misses(const std::vector<TestScene>& scenes) {
   }));
 }
 
+// Whether the arm's file asks for objects that share a feature with the target, without their sharing alike.
+bool is_hard(const Scenario& scenario, const std::string& arm) {
+  for (const Json& test : scenario.json.value("tests", Json::array()))
+    if (test.value("arm", "") == arm) return test.value("hard", false);
+  return false;
+}
+
 // Scenes of one arm in one layout: sampled, then played by the oracle, then by whoever takes any object.
 void judge_arm(const Scenario& scenario, const std::string& layout, const std::string& arm, int count,
                Environment& environment, CheckReport& report) {
@@ -107,8 +114,12 @@ void judge_arm(const Scenario& scenario, const std::string& layout, const std::s
     report.note(where, "any visible object is right",
                 "more distractors, or a narrower command, would test abstraction");
   if (bites && 4 * (shared - any.successes) > count)
-    report.note(where, "the object that shares most with the others is often the target, so the command is not needed",
-                "\"near_miss\" in place of \"hard\" gives objects that share alike");
+    report.note(where,
+                fmt::format("the object that shares most with the others is the target in {} of {} scenes, so the "
+                            "command is hardly needed",
+                            shared, count),
+                fmt::format("give the arm \"near_miss\": true{}, and its objects share alike",
+                            is_hard(scenario, arm) ? " in place of \"hard\"" : ""));
 }
 
 void judge_answers(const Scenario& scenario, CheckReport& report) {

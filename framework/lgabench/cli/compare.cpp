@@ -1,6 +1,8 @@
 // lgabench compare: is run B worse than run A?
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -15,6 +17,10 @@ report::RunResults read_whole(const fs::path& directory) {
   report::RunResults run = report::read_run(directory);
   name_other_version(run);
   if (!run.unreadable.empty()) throw InputError(run.unreadable.front());
+  const auto failed = std::count_if(run.cells.begin(), run.cells.end(), [](const auto& cell) { return cell.failed; });
+  if (failed > 0 || run.not_run > 0)
+    to_stderr("{}: of {} cells {} failed and {} have not been played: only the others are compared\n",
+              directory.string(), run.record.cells.size(), failed, run.not_run);
   return run;
 }
 

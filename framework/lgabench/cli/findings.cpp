@@ -24,8 +24,15 @@ void print(const Finding& finding) {
 
 void print(const CheckReport& report, std::size_t first) {
   for (std::size_t i = first; i < report.findings.size(); ++i) print(report.findings[i]);
-  const bool good = !has_problem(report);
-  put(stdout, painted(stdout, good ? Colour::green : Colour::red, good ? "good" : "not good: see the problems above"));
+  const auto notes = std::count_if(report.findings.begin(), report.findings.end(),
+                                   [](const Finding& f) { return f.state == Finding::State::note; });
+  if (has_problem(report))
+    put(stdout, painted(stdout, Colour::red, "not good: see the problems above"));
+  else if (notes > 0)
+    put(stdout,
+        painted(stdout, Colour::yellow, fmt::format("no problem, {} note{}: see above", notes, notes == 1 ? "" : "s")));
+  else
+    put(stdout, painted(stdout, Colour::green, "good"));
   to_stdout("\n");
 }
 

@@ -101,7 +101,7 @@ int verify(LeaderboardArguments a) {
     entries = leaderboard::entry_directories(a.board);
   const leaderboard::Vouched vouched = leaderboard::read_vouched(a.board);
   bool differs = false;
-  std::size_t unverified = 0;
+  std::size_t verified = 0, unverified = 0;
   for (const fs::path& directory : entries) {
     leaderboard::Entry entry;
     std::optional<Json> line;
@@ -121,6 +121,7 @@ int verify(LeaderboardArguments a) {
     }
     if (!line) return interrupted;
     leaderboard::add_verification(a.board, entry, *line);
+    ++verified;
     const bool passed = line->at("passed");
     const std::string found = a.verify.fresh ? fresh_words(entry, *line) : replay_words(entry, *line);
     to_stdout("{} {}: {} (nonce {})\n", passed ? "agrees " : "DIFFERS", directory.string(), found,
@@ -132,6 +133,9 @@ int verify(LeaderboardArguments a) {
       to_stderr("To make it count: lgabench leaderboard vouch {} {}\n", entry.id(), entry.verifications.size() + 1);
     differs = differs || !passed;
   }
+  if (verified + unverified == 0)
+    throw InputError(fmt::format("{}: no entry that is not withdrawn: nothing was verified",
+                                 a.what.empty() ? a.board.string() : a.what));
   if (unverified > 0) to_stderr("{} of {} entries were not verified\n", unverified, entries.size());
   return differs ? regression : unverified > 0 ? usage : ok;
 }

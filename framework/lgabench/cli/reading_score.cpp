@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include <lgabench/abstraction/goal_mask.hpp>
@@ -23,7 +24,7 @@ namespace lgabench::cli {
 namespace {
 
 struct Score {
-  int scenes = 0, exact = 0, objects = 0, segments = 0, types = 0, textures = 0, unread = 0;
+  int scenes = 0, exact = 0, objects = 0, segments = 0, types = 0, textures = 0, unanswered = 0;
   SelectionCost cost{};
   std::string model{};  // who looked
 };
@@ -110,9 +111,11 @@ std::vector<Instance> unnamed(const Observation& seen) {
   return all;
 }
 
-// The segments that the model takes the command to mean, and what asking cost.
-std::vector<std::uint8_t> looked_at(ChatLanguageModel& model, const Command& command, const Observation& read,
-                                    Score& score) {
+// The segments that the model takes the command to mean. Nothing where it has no answer, which is told; what asking
+// cost counts in both cases.
+std::optional<std::vector<std::uint8_t>> looked_at(ChatLanguageModel& model, const Command& command,
+                                                   const Observation& read, Score& score,
+                                                   std::vector<std::string>& unanswered) {
   std::vector<std::uint8_t> ids, kept;
   for (const Instance& one : read.instances) ids.push_back(one.id);
   const Observation large = marked(read, ids);
@@ -122,17 +125,21 @@ std::vector<std::uint8_t> looked_at(ChatLanguageModel& model, const Command& com
                                    static_cast<std::size_t>(column));
   });
   const SelectionCost before = model.cost();
+  std::string why;
   try {
     for (const int mark : model.look(command, picture.png(), static_cast<int>(ids.size())))
       kept.push_back(ids[static_cast<std::size_t>(mark) - 1]);
   } catch (const Unread& e) {
-    to_stderr("no answer: {}\n", one_line(e.what()));
-    ++score.unread;
-    kept.assign(1, 0);
+    why = e.what();
+  } catch (const Unanswered& e) {
+    why = e.questions.front();  // a picture is one question
   }
   score.cost += model.cost() - before;
   score.model = model.model();
-  return kept;
+  if (why.empty()) return kept;
+  ++score.unanswered;
+  unanswered.push_back(why);
+  return std::nullopt;
 }
 
 void print_row(const Reading& reading, const std::string& arm, const Score& score, bool json) {
@@ -143,7 +150,7 @@ void print_row(const Reading& reading, const std::string& arm, const Score& scor
              {"segments_right", score.segments}};
     if (by_model)
       row.update({{"model", score.model},
-                  {"unread", score.unread},
+                  {"unanswered", score.unanswered},
                   {"lm_queries", score.cost.lm_queries},
                   {"lm_tokens", score.cost.lm_tokens},
                   {"lm_seconds", score.cost.lm_seconds}});
@@ -158,6 +165,8 @@ void print_row(const Reading& reading, const std::string& arm, const Score& scor
   if (by_model)
     to_stdout("  {} questions, {} tokens, {:.1f} s, {}", score.cost.lm_queries, score.cost.lm_tokens,
               score.cost.lm_seconds, score.model);
+  if (score.unanswered > 0)
+    to_stdout("; {} of {} scenes have no answer", score.unanswered, score.unanswered + score.scenes);
   to_stdout("\n");
 }
 
@@ -226,14 +235,13 @@ void print_reading_scores(const Suite& suite, Truth truth, const ReadingArgument
             const Observation shown = perceived ? perceived(seen, scene) : seen;
             Observation there = read ? read(shown, scene) : shown;
             if (by_model) there.instances = unnamed(there);
-            try {
-              const std::vector<std::uint8_t> kept =
-                  by_model ? looked_at(*model, scenario.command(scene.command), there, row->second)
-                           : grounded(scenario.commands[static_cast<std::size_t>(scene.command)].truth.target, there);
-              add_scene(scene, seen, there, kept, row->second, confusions);
-            } catch (const Unanswered& e) {
-              unanswered.insert(unanswered.end(), e.questions.begin(), e.questions.end());
-            }
+            std::vector<std::string> why;
+            const auto kept =
+                by_model ? looked_at(*model, scenario.command(scene.command), there, row->second, why)
+                         : grounded(scenario.commands[static_cast<std::size_t>(scene.command)].truth.target, there);
+            if (kept) add_scene(scene, seen, there, *kept, row->second, confusions);
+            for (const std::string& one : why)
+              unanswered.push_back(fmt::format("{}, {}, scene {}: {}", id, arm.id, i, one));
             progress.tell_next();
           }
         }
@@ -243,8 +251,7 @@ void print_reading_scores(const Suite& suite, Truth truth, const ReadingArgument
     }
   if (unanswered.empty()) return;
   for (const std::string& question : unanswered) to_stderr("no answer: {}\n", one_line(question));
-  throw MethodError(fmt::format(
-      "{} pictures have no reply and are in no row; run the same command to ask about them again", unanswered.size()));
+  throw MethodError(fmt::format("{} scenes have no answer and are in no mean", unanswered.size()));
 }
 
 }  // namespace lgabench::cli

@@ -22,10 +22,10 @@ struct ReadingArguments {
 /// arm: in how many scenes the true Selection keeps exactly the objects that are meant, which share of the visible
 /// objects has its segment (four fifths of what both cover), its type and its texture; then which names were taken for
 /// which. Under the name `looked`, `model` names the marked segments that the command could mean, and those are what is
-/// kept: then for every arm what it cost, and a line for each picture without an answer that can be read, which is not
-/// exact.
+/// kept: then for every arm what it cost. A picture without an answer is in no mean: its row counts it, and a line on
+/// stderr names its scene.
 /// @throws InputError for names that a plugin reads, for an arm that no scenario has, and where a scenario's pictures
-/// cannot be read; Unanswered at the end, for pictures without any reply, which are in no row.
+/// cannot be read; MethodError at the end where a picture has no answer, and at once as ChatLanguageModel::look().
 void print_reading_scores(const Suite& suite, Truth truth, const ReadingArguments& arguments,
                           ChatLanguageModel* model = nullptr);
 

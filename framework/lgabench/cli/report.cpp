@@ -14,15 +14,21 @@
 namespace lgabench::cli {
 namespace {
 
-// Names the cells that could not be read; their run is then an error, though its report is there.
+// Names the cells that could not be read; their run is then an error, though its report is there. So is one without a
+// number: no cell finished.
 int exit_of(const report::RunResults& results, int otherwise) {
   name_other_version(results);
   for (const std::string& why : results.unreadable) to_stderr("left out: {}\n", why);
-  return results.unreadable.empty() ? otherwise : usage;
+  if (results.not_run > 0) to_stderr("{} cells of the run have not been played: not final\n", results.not_run);
+  if (!results.unreadable.empty()) return usage;
+  const bool none_finished =
+      std::all_of(results.cells.begin(), results.cells.end(), [](const auto& cell) { return cell.failed; });
+  if (none_finished)
+    to_stderr("{}: all its {} cells failed: nothing was measured\n", results.directory.string(), results.cells.size());
+  return none_finished ? cells_failed : otherwise;
 }
 
 int verdict_of(const report::RunResults& results, const std::vector<report::Claim>& claims) {
-  if (results.not_run > 0) to_stderr("{} cells of the run have not been played: not final\n", results.not_run);
   if (results.record.smoke) to_stderr("Smoke or limited run: not for the leaderboard.\n");
   const bool reversed =
       std::any_of(claims.begin(), claims.end(), [](const auto& c) { return c.verdict == report::Verdict::reversed; });
@@ -90,7 +96,7 @@ int report_all(const std::vector<std::string>& directories, const std::string& i
   put(stdout, printable(report::terminal(report::write_index(reports, file), "")));
   to_stderr("{}\n", file.string());
   int exit = ok;
-  for (const report::Report& report : reports) exit = exit_of(report.run, exit);
+  for (const report::Report& report : reports) exit = std::max(exit, exit_of(report.run, ok));
   return exit;
 }
 

@@ -129,20 +129,27 @@ Json line_of(const report::CellResult& cell, const Episode& episode, const Resco
   return line;
 }
 
+// Says which cells have no episodes, and why; whether there are any.
+bool name_lacking(const report::RunResults& run) {
+  const auto has_failed = [](const report::CellResult& cell) { return cell.failed; };
+  const auto failed = static_cast<std::size_t>(std::count_if(run.cells.begin(), run.cells.end(), has_failed));
+  for (const std::string& why : run.unreadable) to_stderr("left out: {}\n", why);
+  if (failed > 0) to_stderr("{} failed cells have no episodes\n", failed);
+  if (run.not_run > 0) to_stderr("{} cells have not been played\n", run.not_run);
+  return failed + run.unreadable.size() > 0 || run.not_run > 0;
+}
+
 int rescore(const RescoreArguments& a) {
   const report::RunResults run = report::read_run(a.run);
   PlayedScenes scenes(a.plugin_path);
   std::vector<ByRow> rows;
   std::string lines;
   constexpr int most_named = 10;
-  int left_out = 0, failed = 0;
+  int left_out = 0;
   CountedProgress progress("cells judged:", static_cast<int>(run.cells.size()));
   for (const report::CellResult& cell : run.cells) {
     progress.tell_next();
-    if (cell.failed) {
-      ++failed;
-      continue;
-    }
+    if (cell.failed) continue;
     const PlayedScenes::Played& played = scenes.cell((a.run / "cells" / cell.key / cell_file::configuration).string());
     if (a.judge == "pose") report::task_judged_by_pose(played.scenario.environment, played.scenario.task);
     for (const std::string& arm : cell.arms) {
@@ -164,9 +171,9 @@ int rescore(const RescoreArguments& a) {
   progress.end();
   print(a, rows);
   if (!a.json.empty()) write_file(a.json, lines);
-  if (failed) to_stderr("{} failed cells have no episodes\n", failed);
+  const bool lacks = name_lacking(run);
   if (left_out) to_stderr("{} episodes could not be judged again and are left out\n", left_out);
-  return left_out ? cells_failed : ok;
+  return left_out || lacks ? cells_failed : ok;
 }
 
 }  // namespace
@@ -200,7 +207,8 @@ void add_rescore(CLI::App& app, int& exit) {
   verb->footer(
       "rescore carries out the recorded actions on the recorded engine, without the method; RUN does not change. "
       "Without tolerances, physics gives the recorded verdicts. Episodes that do not end here as recorded, or whose "
-      "scene cannot be made again, are named and left out; the exit status is then 3.\n"
+      "scene cannot be made again, are named and left out, as are cells that failed, are damaged or were not played; "
+      "the exit status is then 3.\n"
       "Example: lgabench rescore runs/q1 --position-tolerance 0.05 --json rescored.jsonl");
   verb->callback([a, position, poses, &exit] {
     const bool by_pose = a->judge == "pose";

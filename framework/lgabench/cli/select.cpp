@@ -42,6 +42,7 @@ struct SelectArguments {
 
 // What is asked: the words, and the truth where a scenario has one for them.
 struct Asked {
+  std::string scenario;              // its id; empty for words alone
   std::string answers_of, recorded;  // the scenario's, see there
   FeatureSpace space;
   Command command;
@@ -107,6 +108,7 @@ Answerer make_answerer(const SelectArguments& a) {
                       a.max_queries,
                       {}};
   options.any_served = a.any_served;
+  options.expects_read = a.score;
   if (live) {
     OpenAiOptions server = openai_from_environment();
     server.timeout_s = a.reply_timeout_s;
@@ -122,7 +124,8 @@ Answerer make_answerer(const SelectArguments& a) {
 std::vector<Asked> commands_of(const Scenario& scenario) {
   std::vector<Asked> asked;
   for (const ScenarioCommand& c : scenario.commands)
-    asked.push_back({scenario.answers_of,
+    asked.push_back({scenario.id,
+                     scenario.answers_of,
                      scenario.recorded,
                      scenario.space,
                      {c.utterance, scenario.task, scenario.second},
@@ -163,6 +166,7 @@ std::vector<Asked> find_commands(const SelectArguments& arguments) {
   if (!same_words.empty()) return {same_words.front()};
   if (arguments.command.find(' ') == std::string::npos) load_scenario(arguments.command);  // says which there are
   Asked asked{"",
+              "",
               Scenario().recorded,
               load_feature_space(arguments.space),
               {arguments.command, arguments.task, std::nullopt},
@@ -207,6 +211,9 @@ void select(const Asked& asked, LanguageModel* answering, const SelectArguments&
   const double passed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const Quality judged = asked.truth ? quality(selection, *asked.truth) : Quality{};
   const std::string text = selection_text(selection, asked.space);
+  if (const std::string why = empty_text(selection); !why.empty())
+    to_stderr("{}\"{}\" keeps no object: {}\n", asked.scenario.empty() ? "" : asked.scenario + ": ",
+              asked.command.utterance, why);
   if (arguments.json) {
     to_stdout("{}\n", canonical({{"utterance", asked.command.utterance},
                                  {"selection", to_json(selection)},
@@ -320,7 +327,7 @@ void add_select(CLI::App& app, int&) {
         use(answerer_of(commands_of(scenario).front(), answerer.model.get(), *arguments, recorded));
       };
       return print_scores(load_suite(arguments->suite), read_truth(arguments->truth), arguments->scenes,
-                          arguments->json, with_answers);
+                          arguments->json, arguments->answers != Nobody().model(), with_answers);
     }
     const std::vector<Asked> commands = find_commands(*arguments);
     if (answerer.client) say_what_is_open(answerer, commands, arguments->concurrency);

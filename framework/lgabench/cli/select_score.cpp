@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <lgabench/abstraction/best_product.hpp>
+#include <lgabench/abstraction/chat_model.hpp>
 #include <lgabench/abstraction/scene_score.hpp>
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/core/contains.hpp>
@@ -30,11 +31,13 @@ struct Row {
   std::string group, asking;
   SceneScore score;
   int questions = 0, otherwise = 0;  // otherwise: commands for which something else was selected than for the first
+  int unanswered = 0;                // commands that are in nothing else here
 
   void add(const Row& other) {
     score += other.score;
     questions += other.questions;
     otherwise += other.otherwise;
+    unanswered += other.unanswered;
   }
 };
 
@@ -51,7 +54,21 @@ struct ScoredCommand {
 struct Scores {
   std::vector<ScoredCommand> commands;
   std::vector<std::string> sources;
+  std::vector<std::string> unanswered;  // a line for each question
 };
+
+// What `ask` returns, or nothing where an answer lacks, which is told.
+template <class Ask>
+auto answered(std::vector<std::string>& unanswered, Ask&& ask) -> std::optional<decltype(ask())> {
+  try {
+    return ask();
+  } catch (const Unanswered& e) {
+    unanswered.insert(unanswered.end(), e.questions.begin(), e.questions.end());
+  } catch (const Unread& e) {
+    unanswered.emplace_back(e.what());
+  }
+  return std::nullopt;
+}
 
 std::string title_of(const Scenario& scenario, const ScenarioCommand& command, const std::string& arm) {
   if (!arm.empty()) return scenario.id + ", " + arm;
@@ -84,34 +101,40 @@ Scores scores_of(const std::string& asking, const Suite& suite, Truth truth, int
     with_answers(scenario, [&](LanguageModel& model) {
       Json first;
       for (int i = 0; i < static_cast<int>(scenario.commands.size()); ++i) {
-        const Selection selection = select_as_asked(asking, scenario.command(i), scenario.space, model);
-        add_source(selection.source, all.sources);
-        const Json kept = distribution_json(selection);
-        if (i == 0) first = kept;
         const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(i)];
         const std::string arm = arm_of(scenario, i);
-        const SceneScore scored =
-            score(scenario, i, selection, suite.design.layouts.front(), suite.design.scene_seed, scenes);
-        all.commands.push_back({id,
-                                arm,
-                                title_of(scenario, command, arm),
-                                command.ambiguous,
-                                {"", asking, scored, selection.cost.lm_queries, kept == first ? 0 : 1}});
+        ScoredCommand& scored = all.commands.emplace_back(
+            ScoredCommand{id, arm, title_of(scenario, command, arm), command.ambiguous, {"", asking, {}}});
         progress.tell_next();
+        const auto selection = answered(
+            all.unanswered, [&] { return select_as_asked(asking, scenario.command(i), scenario.space, model); });
+        if (!selection) {
+          scored.row.unanswered = 1;
+          continue;
+        }
+        add_source(selection->source, all.sources);
+        const Json kept = distribution_json(*selection);
+        if (first.is_null()) first = kept;
+        scored.row.score =
+            score(scenario, i, *selection, suite.design.layouts.front(), suite.design.scene_seed, scenes);
+        scored.row.questions = selection->cost.lm_queries;
+        scored.row.otherwise = kept == first ? 0 : 1;
       }
     });
   }
   return all;
 }
 
-// A command behind whose words stands a preference, and whether the hypotheses on it hold the truth.
+// A command behind whose words stands a preference, and whether the hypotheses on it hold the truth: none where there
+// is no answer.
 struct Covered {
   std::string scenario, name;
-  bool holds_truth;
+  std::optional<bool> holds_truth;
 };
 
 // Those on which there are no hypotheses are left out.
-std::vector<Covered> coverage_of(const Suite& suite, Truth truth, const WithAnswers& with_answers) {
+std::vector<Covered> coverage_of(const Suite& suite, Truth truth, const WithAnswers& with_answers,
+                                 std::vector<std::string>& unanswered) {
   std::vector<Covered> all;
   for (const std::string& id : suite_scenario_ids(suite, suite.design)) {
     const Scenario scenario = suite_scenario(suite, id, truth);
@@ -120,9 +143,10 @@ std::vector<Covered> coverage_of(const Suite& suite, Truth truth, const WithAnsw
     with_answers(scenario, [&](LanguageModel& model) {
       for (int i = 0; i < (of_persons ? static_cast<int>(scenario.commands.size()) : 1); ++i) {
         const Command command = scenario.command(i);
-        const std::vector<Hypothesis> hypotheses = model.hypotheses(command, scenario.space);
-        if (hypotheses.empty()) continue;
-        all.push_back({id, of_persons ? command.utterance : id, covers_truth(hypotheses, scenario, i)});
+        const auto hypotheses = answered(unanswered, [&] { return model.hypotheses(command, scenario.space); });
+        if (hypotheses && hypotheses->empty()) continue;
+        Covered& one = all.emplace_back(Covered{id, of_persons ? command.utterance : id, {}});
+        if (hypotheses) one.holds_truth = covers_truth(*hypotheses, scenario, i);
       }
     });
   }
@@ -133,28 +157,38 @@ std::vector<Covered> coverage_of(const Suite& suite, Truth truth, const WithAnsw
 void print_coverage(const std::vector<Covered>& all, const Groups& groups, bool json) {
   if (all.empty()) return;
   for (const auto& [group, scenarios] : groups) {
-    int commands = 0, with_truth = 0;
-    for (const Covered& one : all)
-      if (contains(scenarios, one.scenario)) ++commands, with_truth += one.holds_truth;
-    if (json && commands > 0)
-      to_stdout(
-          "{}\n",
-          canonical({{"group", group}, {"asked", "hypotheses"}, {"commands", commands}, {"covered", with_truth}}));
+    int commands = 0, with_truth = 0, unanswered = 0;
+    for (const Covered& one : all) {
+      if (!contains(scenarios, one.scenario)) continue;
+      one.holds_truth ? ++commands : ++unanswered;
+      with_truth += one.holds_truth.value_or(false);
+    }
+    if (json && commands + unanswered > 0)
+      to_stdout("{}\n", canonical({{"group", group},
+                                   {"asked", "hypotheses"},
+                                   {"commands", commands},
+                                   {"covered", with_truth},
+                                   {"unanswered", unanswered}}));
   }
   if (json) return;
   constexpr std::size_t most_names = 10;
+  std::size_t answered = 0;
   std::vector<std::string> lacking;
-  for (const Covered& one : all)
-    if (!one.holds_truth) lacking.push_back(one.name);
+  for (const Covered& one : all) {
+    answered += one.holds_truth.has_value();
+    if (one.holds_truth == false) lacking.push_back(one.name);
+  }
   const bool names_them = !lacking.empty() && lacking.size() <= most_names;
-  to_stdout("hypotheses on what the words leave unsaid hold the truth for {} of {} commands{}\n",
-            all.size() - lacking.size(), all.size(),
-            names_them ? fmt::format(", not for {}", fmt::join(lacking, ", ")) : "");
+  to_stdout("hypotheses on what the words leave unsaid hold the truth for {} of {} commands{}{}\n",
+            answered - lacking.size(), answered,
+            names_them ? fmt::format(", not for {}", fmt::join(lacking, ", ")) : "",
+            answered < all.size() ? fmt::format("; {} more have no answer", all.size() - answered) : "");
 }
 
 std::string share(int part, int of) { return of == 0 ? "-" : fixed(static_cast<double>(part) / of); }
 
 std::string exact_scenes(const SceneScore& score) {
+  if (score.scenes == 0) return "-";
   const report::Interval interval = report::wilson(score.exact_scenes, score.scenes);
   return fmt::format("{} [{}, {}]", share(score.exact_scenes, score.scenes), fixed(interval.low), fixed(interval.high));
 }
@@ -169,23 +203,27 @@ Json to_json(const Row& row, bool by_arm) {
             {"kept", row.score.kept},
             {"meant", row.score.meant},
             {"right", row.score.right},
-            {"questions", row.questions}};
+            {"questions", row.questions},
+            {"unanswered", row.unanswered}};
   if (by_arm) json["otherwise"] = row.otherwise;
   return json;
 }
 
 void print(const Row& row, bool by_arm) {
-  to_stdout("{:<14} {:<11} {:>4}  {:<18}  {:>5}  {:>9}  {:>6}  {:>9}{}\n", row.group, row.asking, row.score.commands,
+  to_stdout("{:<14} {:<11} {:>4}  {:<18}  {:>5}  {:>9}  {:>6}  {:>9}{}{}\n", row.group, row.asking, row.score.commands,
             exact_scenes(row.score), share(row.score.exact_sets, row.score.commands),
             share(row.score.right, row.score.kept), share(row.score.right, row.score.meant), row.questions,
-            by_arm ? fmt::format("  {:>9}", share(row.otherwise, row.score.commands)) : "");
+            by_arm ? fmt::format("  {:>9}", share(row.otherwise, row.score.commands)) : "",
+            row.unanswered == 0 ? ""
+                                : fmt::format("  {} of {} commands have no answer", row.unanswered,
+                                              row.unanswered + row.score.commands));
 }
 
 // What a reader is told of a command: one whose scenes are not all exact, or that enters no mean.
 void print_misread(const Scores& scores) {
   for (const ScoredCommand& command : scores.commands) {
     const int scenes = command.row.score.scenes, exact = command.row.score.exact_scenes;
-    if (exact == scenes && !command.ambiguous) continue;
+    if (command.row.unanswered > 0 || (exact == scenes && !command.ambiguous)) continue;
     std::vector<std::string> words{fmt::format("{} of {} scenes", exact, scenes)};
     const SceneScore& score = command.row.score;
     if (!score.wrongly_kept.empty()) words.push_back(fmt::format("kept: {}", fmt::join(score.wrongly_kept, ", ")));
@@ -197,25 +235,32 @@ void print_misread(const Scores& scores) {
 
 }  // namespace
 
-void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const WithAnswers& with_answers) {
+void print_scores(const Suite& suite, Truth truth, int scenes, bool json, bool expects_answers,
+                  const WithAnswers& with_answers) {
   std::map<std::string, Scores> by_asking;
-  std::string left_out;
+  std::vector<std::string> left_out, unanswered;
   CountedProgress progress("commands scored:", static_cast<int>(std::size(ways_of_asking)) * commands_of(suite, truth));
-  for (const char* asking : ways_of_asking) {
+  bool hopeless = false;
+  // What is left out of the table, and why, where nobody can answer so.
+  const auto unless_impossible = [&](const char* what, const std::function<void()>& ask) {
     try {
-      by_asking[asking] = scores_of(asking, suite, truth, scenes, with_answers, progress);
+      ask();
     } catch (const InputError& e) {
-      by_asking.erase(asking);
-      left_out += fmt::format("{}: {}\n", asking, one_line(e.what()));
+      left_out.push_back(fmt::format("{}: {}", what, one_line(e.what())));
+    } catch (const Hopeless& e) {
+      hopeless = true;
+      left_out.push_back(fmt::format("{}: {}", what, one_line(e.what())));
     }
-  }
+  };
+  for (const char* asking : ways_of_asking)
+    unless_impossible(asking, [&] {
+      const Scores scores = scores_of(asking, suite, truth, scenes, with_answers, progress);
+      unanswered.insert(unanswered.end(), scores.unanswered.begin(), scores.unanswered.end());
+      by_asking[asking] = scores;
+    });
   progress.end();
   std::vector<Covered> covered;
-  try {
-    covered = coverage_of(suite, truth, with_answers);
-  } catch (const InputError& e) {
-    left_out += fmt::format("hypotheses: {}\n", one_line(e.what()));
-  }
+  unless_impossible("hypotheses", [&] { covered = coverage_of(suite, truth, with_answers, unanswered); });
   Groups families;
   for (const auto& [name, scenarios] : suite.groups) families.emplace_back(name, scenarios);
   // Those of the suite, or the arms where commands name them, then all.
@@ -251,17 +296,25 @@ void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const 
         if (is_in(command) && !command.ambiguous) row.add(command.row);
       json ? to_stdout("{}\n", canonical(to_json(row, by_arm))) : print(row, by_arm);
     }
-  if (json) return print_coverage(covered, families, json);
-  to_stdout(
-      "\nn: commands; sets: share of them with no pair of type and texture wrong; precision and recall of the "
-      "objects kept.\n{}{}",
-      by_arm ? "otherwise: share of them for which something else was selected than for the scenario's first.\n" : "",
-      left_out);
+  const std::string why = fmt::format("{}{}", fmt::join(left_out, "\n"), left_out.empty() ? "" : "\n");
+  if (json)
+    to_stderr("{}", why);
+  else
+    to_stdout(
+        "\nn: commands; sets: share of them with no pair of type and texture wrong; precision and recall of the "
+        "objects kept.\n{}{}",
+        by_arm ? "otherwise: share of them for which something else was selected than for the scenario's first.\n" : "",
+        why);
   print_coverage(covered, families, json);
   for (const char* asking : ways_of_asking) {
     const auto scores = by_asking.find(asking);
-    if (scores != by_asking.end() && std::string(asking) != "named") print_misread(scores->second);
+    if (!json && scores != by_asking.end() && std::string(asking) != "named") print_misread(scores->second);
   }
+  for (const std::string& question : unanswered) to_stderr("no answer: {}\n", one_line(question));
+  if (!unanswered.empty())
+    throw MethodError(fmt::format("{} questions have no answer; their commands are in no mean", unanswered.size()));
+  if (hopeless) throw MethodError("the model gives no answers that can be read in a form that was left out");
+  if (expects_answers && sources.empty()) throw InputError("no answer was scored: " + left_out.front());
 }
 
 void write_best_products(const Suite& suite, Truth truth, const std::filesystem::path& file) {

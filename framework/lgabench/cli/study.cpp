@@ -143,9 +143,13 @@ int rehearse(const StudyArguments& a) {
 }
 
 int report_study(const StudyArguments& a) {
-  to_stdout("{}", report::terminal(study::write_report(a.path), a.path));
+  const study::Report report = study::write_report(a.path);
+  to_stdout("{}", report::terminal(report.document, a.path));
   to_stderr("{}\n", (a.path / report_file::page).string());
-  return ok;
+  if (report.damaged > 0) return usage;
+  if (report.used > 0) return ok;
+  to_stderr("{}: nobody's answers count: nothing was measured\n", a.path.string());
+  return cells_failed;
 }
 
 int carry_out(const StudyArguments& a) {

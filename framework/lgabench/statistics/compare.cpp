@@ -285,7 +285,7 @@ RunComparison compare_runs(const RunResults& all_a, const RunResults& all_b, con
                     "arm {}: {}",
                     first.scenario, first.layout, first.arm, first.why));
   }
-  if (pairs.empty() && comparison.failed_a + comparison.failed_b == 0)
+  if (pairs.empty() && comparison.failed_b == 0)
     throw InputError(
         "the runs cannot be compared: no cell finished in both (scenario, layout, engine, method and its options, "
         "demonstrations, training seed)");

@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include <lgabench/abstraction/selection_text.hpp>
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/record/layout.hpp>
@@ -92,6 +93,55 @@ bool any_seen(const Table& table) {
   return std::any_of(table.rows.begin(), table.rows.end(), [](const Row& row) { return row.seen_share(); });
 }
 
+namespace {
+
+// Why the command's Selection keeps no object; "" where it may, and for what is no Selection.
+std::string why_empty(const CommandResult& command) {
+  try {
+    Selection selection;
+    selection.provenance = provenance_from(command.selection.at("provenance"));
+    const Json distribution = distribution_of(command.selection);
+    for (const auto& [role, json] : distribution.items()) {
+      const Meaning meaning = read_unchecked_meaning(JsonReader(json, role));
+      if (role == "target")
+        selection.target = meaning;
+      else
+        selection.second = SecondSet{meaning.product(), role};
+    }
+    return empty_text(selection);
+  } catch (const Error&) {
+    return "";
+  }
+}
+
+// "LGA keeps no object in heart; star: the target has no texture.": a row whose Selection is empty.
+std::vector<std::string> empty_selections(const RunResults& run) {
+  constexpr std::size_t most = 5;
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> all;  // row, why -> commands
+  for (const CellResult& cell : run.cells)
+    for (const CommandResult& command : cell.commands) {
+      if (cell.failed || cell.is_reference()) continue;
+      const std::string why = why_empty(command);
+      if (why.empty()) continue;
+      std::vector<std::string>& commands = all[{cell.method, why}];
+      const std::string name =
+          cell.scenario + (cell.commands.size() == 1 ? "" : fmt::format(", \"{}\"", command.utterance));
+      if (!contains(commands, name)) commands.push_back(name);
+    }
+  std::vector<std::string> lines;
+  for (const auto& [row, commands] : all) {
+    if (lines.size() == most) break;
+    const auto shown = commands.begin() + static_cast<std::ptrdiff_t>(std::min(commands.size(), most));
+    lines.push_back(fmt::format(
+        "{} keeps no object in {}{}: {}.", display_name(row.first), fmt::join(commands.begin(), shown, "; "),
+        commands.size() > most ? fmt::format("; {} more", commands.size() - most) : "", row.second));
+  }
+  if (all.size() > most) lines.push_back(fmt::format("{} more rows keep no object somewhere.", all.size() - most));
+  return lines;
+}
+
+}  // namespace
+
 std::vector<std::string> what_it_lacks(const RunResults& run) {
   std::vector<std::string> lines;
   if (run.rehearsal) lines.push_back(fmt::format("{}: not for the leaderboard.", rehearsal_words));
@@ -103,6 +153,8 @@ std::vector<std::string> what_it_lacks(const RunResults& run) {
                                 run.record.cells.size()));
   if (run.foreign > 0)
     lines.push_back(fmt::format("{} cell directories that run.json does not list were left out.", run.foreign));
+  const std::vector<std::string> empty = empty_selections(run);
+  lines.insert(lines.end(), empty.begin(), empty.end());
   return lines;
 }
 

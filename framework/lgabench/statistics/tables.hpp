@@ -54,7 +54,8 @@ bool acts_the_same(const Row& row);
 /// Whether a row of the table tells.
 bool any_seen(const Table& table);
 
-/// Why the numbers are no whole run's, one line each: no people answered, cells that have not run or cannot be read.
+/// Why the numbers are no whole run's, one line each: no people answered, cells that have not run or cannot be read,
+/// rows that learned nothing since their Selection keeps no object.
 std::vector<std::string> what_it_lacks(const RunResults& run);
 
 /// The notes that a reader of the tables must know, one line each: what †, §, ‡, !, ?, ¶ and = say, how many people

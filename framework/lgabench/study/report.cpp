@@ -430,7 +430,7 @@ std::string trials_csv(const StudyResults& results) {
   return text;
 }
 
-Document write_report(const fs::path& directory) {
+Report write_report(const fs::path& directory) {
   const Record record = read_study(directory);
   for (const std::string& line : record.damaged) to_stderr("LEFT OUT: {}\n", one_line(line));
   const StudyResults results = results_of(record);
@@ -438,7 +438,7 @@ Document write_report(const fs::path& directory) {
   write_file(directory / "trials.csv", trials_csv(results));
   write_file(directory / "results.json", to_json(results).dump(1) + "\n");
   write_document(directory, document);
-  return document;
+  return {std::move(document), record.damaged.size(), results.used()};
 }
 
 }  // namespace lgabench::study

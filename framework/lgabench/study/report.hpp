@@ -11,8 +11,13 @@ Json to_json(const StudyResults& results);
 /// A line for each trial of every person, practice and interrupted ones included.
 std::string trials_csv(const StudyResults& results);
 
-/// Writes DIR/report.html, report.md, results.json, trials.csv, figures/ and tables/. Returns the document. @throws
-/// InputError where there is no study.
-report::Document write_report(const fs::path& directory);
+struct Report {
+  report::Document document;
+  std::size_t damaged = 0;  // people whose file cannot be read; stderr names them
+  int used = 0;             // people who count
+};
+/// Writes DIR/report.html, report.md, results.json, trials.csv, figures/ and tables/. @throws InputError where there is
+/// no study.
+Report write_report(const fs::path& directory);
 
 }  // namespace lgabench::study

@@ -50,8 +50,9 @@ def _lines(data: bytes) -> Iterator[dict[str, Any]]:
 
 
 def load_run(directory: Path, verify: bool = True) -> Run:
-    """Reads a run's directory. With `verify`, each file's SHA-256 is compared with the cell's status.json. ValueError names a
-    file that is not as it was written, or the run that has one; OSError one that cannot be read. A symbolic link is refused."""
+    """Reads a run's directory. With `verify`, each file's SHA-256 is compared with the cell's status.json. Warns where a cell has no
+    result: means over the frames then lack it. ValueError names a file that is not as it was written, or the run that has one;
+    OSError one that cannot be read. A symbolic link is refused."""
     try:
         return _run_at(pathlib.Path(directory), verify)
     except (AttributeError, IndexError, KeyError, RecursionError, TypeError, UnicodeDecodeError, json.JSONDecodeError) as e:
@@ -96,6 +97,9 @@ def _run_at(root: pathlib.Path, verify: bool) -> Run:
         episodes += [{**setting, **one, "command": commands[one["command"]]} for one in _lines(files["episodes.jsonl"])]
         training += [{"cell": key, **one} for one in _lines(files["training.jsonl"])]
         timing.append({"cell": key, **json.loads(files["timing.json"])})
+
+    if failed:
+        warnings.warn(f"{root}: {len(failed)} of {len(run['cells'])} cells have no result (Run.failed says why)", stacklevel=2)
 
     def frame(rows: list[dict[str, Any]]) -> pandas.DataFrame:
         return pandas.DataFrame(rows, columns=None if rows else ["cell"]).set_index("cell")

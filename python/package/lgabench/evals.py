@@ -20,7 +20,8 @@ from typing import Any, Callable, Iterable, Iterator, Mapping, Sequence
 from lgabench.__main__ import PROGRAM
 
 FORMS = ("flat", "structured")  # yes or no of each feature; what the command means
-METRICS = ("scenes_exact", "exact_sets", "precision", "recall")
+METRICS = ("scenes_exact", "exact_sets", "precision", "recall", "answered")
+UNANSWERED = 3  # exit status
 ANSWER_TOKENS = 4096  # of a reply in lm-evaluation-harness, whose default of 256 cuts reasoning off
 # Members of a request that a log of Inspect names as its server does.
 SENT = ("temperature", "top_p", "top_k", "max_tokens", "seed", "frequency_penalty", "presence_penalty", "reasoning_effort")
@@ -32,9 +33,10 @@ def suites() -> list[str]:
     return sorted(file.stem for file in (PROGRAM.parents[1] / "share/lgabench/suites").glob("*.json"))
 
 
-def _call(*words: object) -> str:
+def _call(*words: object, also: int = 0) -> str:
+    """What the program prints. ValueError for an exit status other than 0 and `also`."""
     done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True)
-    if done.returncode:
+    if done.returncode not in (0, also):
         raise ValueError("; ".join(done.stderr.strip().splitlines()[-3:]))
     return done.stdout
 
@@ -54,16 +56,19 @@ def questions(suite: str, form: str = "flat") -> list[dict[str, str]]:
 
 def score(replies: Iterable[Reply], scenes: int = 30) -> dict[str, float]:
     """METRICS of replies to all questions of one suite in one form, by `lgabench select --score`; nan for a share of nothing.
-    ValueError names questions without an answer, for which there is no score."""
+    `answered` is the share of the commands whose replies can be read; the others are in no other metric. ValueError names
+    questions without a reply that is yes or no, for which there is no score."""
     replies = list(replies)
     (suite, form), = {(reply["suite"], reply["form"]) for reply in replies}
     with tempfile.TemporaryDirectory() as folder:
         lines, cassette = pathlib.Path(folder, "replies.jsonl"), pathlib.Path(folder, "cassette.jsonl")
         lines.write_text("".join(json.dumps(reply) + "\n" for reply in replies))
         _call("answers", "--from", lines, "--model", "model", "--cassette", cassette)
-        said = _call("select", "--suite", suite, "--score", "--json", "--scenes", scenes, "--answers", f"cassette:{cassette}")
+        said = _call("select", "--suite", suite, "--score", "--json", "--scenes", scenes, "--answers", f"cassette:{cassette}",
+                     also=UNANSWERED)
     row, = (row for row in map(json.loads, said.splitlines()) if (row["group"], row["asked"]) == ("all", form))
-    shares = (("exact_scenes", "scenes"), ("exact_sets", "commands"), ("right", "kept"), ("right", "meant"))
+    row["all"] = row["commands"] + row["unanswered"]
+    shares = (("exact_scenes", "scenes"), ("exact_sets", "commands"), ("right", "kept"), ("right", "meant"), ("commands", "all"))
     return {name: row[part] / row[of] if row[of] else math.nan for name, (part, of) in zip(METRICS, shares)}
 
 
@@ -95,7 +100,7 @@ def _aggregation(metric: str) -> Callable[[Iterable[Sequence[str]]], float]:
     return of_all
 
 
-scenes_exact, exact_sets, precision, recall = map(_aggregation, METRICS)
+scenes_exact, exact_sets, precision, recall, answered = map(_aggregation, METRICS)
 
 
 def write_tasks(folder: pathlib.Path, ids: Iterable[str]) -> list[str]:
@@ -119,7 +124,7 @@ process_results: !function lgabench.evals.process_results
 generation_kwargs: {{until: [], do_sample: false, temperature: 0, max_gen_toks: {ANSWER_TOKENS}}}
 metric_list:
 """ + "".join(f"  - {{metric: {metric}, aggregation: !function lgabench.evals.{metric}, higher_is_better: true}}\n"
-                        for metric in METRICS) + "metadata: {version: 1}\n")
+                        for metric in METRICS) + "metadata: {version: 2}\n")
             names.append(name)
     return names
 

@@ -37,20 +37,25 @@ def evaluate(act: Callable[[Observation, str], numpy.typing.ArrayLike], scenario
     """Plays the first `episodes` test scenes: act(observation, utterance) -> an action, in metres.
 
     An action that is none (too few numbers, NaN, a rotation of norm 0) is a failure, `method_error`, as in a run; with `strict`
-    its ValueError is raised. What act() itself raises is always raised.
+    its ValueError is raised. If all actions are none, the first ValueError is raised in any case: nothing was measured. What act()
+    itself raises is always raised.
     """
     if episodes < 1:
         raise ValueError(f"episodes {episodes}: expected 1 or more")
     environment = scenario if isinstance(scenario, Environment) else Environment(scenario, engine, layout)
     failures: collections.Counter[str] = collections.Counter()
+    first: Optional[ValueError] = None
     for index in range(episodes):
         seen = environment.reset("test", index, arm=arm, seed=seed, own_scenes=own_scenes)
         action = act(seen, environment.utterance)
         try:
             failures[environment.step(action).failure] += 1
-        except ValueError:
+        except ValueError as e:
             if strict:
                 raise
+            first = first or e
             failures["method_error"] += 1
+    if first and failures["method_error"] == episodes:
+        raise first
     won = failures.pop("none", 0)
     return Result(won / episodes, *wilson(won, episodes), episodes, dict(failures))

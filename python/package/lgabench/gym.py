@@ -2,14 +2,14 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Mapping, NoReturn, Optional, Sequence, SupportsFloat, Union
+from typing import Any, Callable, Mapping, NoReturn, Optional, Sequence, SupportsFloat, Union
 
 import gymnasium
 import numpy
 from gymnasium import spaces
 from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
-from gymnasium.vector.utils import batch_space
+from gymnasium.vector.utils import batch_space, read_from_shared_memory
 
 from lgabench.scenes import INDICES, Batch, Environment, Pool, Scenario, SPLITS
 
@@ -42,26 +42,58 @@ class _Reward:
         return dense_reward(success, distance) if self.is_dense else float(success)
 
 
+class Instruction(spaces.Text):
+    """The command's words. Gymnasium's Text is read from an AsyncVectorEnv's shared memory once, before there are any words."""
+
+
+_read_text: Callable[..., Any] = read_from_shared_memory.dispatch(spaces.Text)
+
+
+class _Words:
+    """What lies in the memory at the moment, as a tuple has it; the copy that AsyncVectorEnv hands out is that tuple."""
+
+    def __init__(self, space: Instruction, memory: Any, n: int) -> None:
+        self._arguments = space, memory, n
+
+    def __deepcopy__(self, memo: Any) -> tuple[str, ...]:
+        return tuple(_read_text(*self._arguments))
+
+    def __getitem__(self, at: Any) -> Any:
+        return _read_text(*self._arguments)[at]
+
+    def __len__(self) -> int:
+        return self._arguments[2]
+
+
+@read_from_shared_memory.register(Instruction)
+def _read_words(space: Instruction, memory: Any, n: int = 1) -> Any:
+    return _Words(space, memory, n)
+
+
 def observation_space(scenario: Scenario) -> spaces.Dict:
     rows, columns = scenario.picture_size
     return spaces.Dict({
         "rgb": spaces.Box(0, 255, (rows, columns, 3), numpy.uint8),
         "ids": spaces.Box(0, 255, (rows, columns), numpy.uint8),
         "instances": spaces.Box(-1, 32767, (scenario.most_instances, 4), numpy.int16),
-        "instruction": spaces.Text(256, charset=PRINTABLE + "".join(sorted(set("".join(scenario.commands)) - set(PRINTABLE)))),
+        "instruction": Instruction(256, charset=PRINTABLE + "".join(sorted(set("".join(scenario.commands)) - set(PRINTABLE)))),
     })
 
 
 class _Choice:
-    """Which scene a reset begins: that of its options, else split train draws one, and dev and test play `seed` or the next."""
+    """Which scene a reset begins: that of its options, else split train draws one, and dev and test play `seed`, and without one
+    go on by `stride`, from `first` (None: from a seed alone). What options name does not move where they go on."""
 
-    def __init__(self, scenario: Scenario, split: str, arm: Optional[str], scene_seed: int) -> None:
+    def __init__(self, scenario: Scenario, split: str, arm: Optional[str], scene_seed: int, first: Optional[int], stride: int
+                 ) -> None:
+        if stride < 1:
+            raise ValueError(f"stride {stride}: expected 1 or more")
         if split not in SPLITS:
             raise ValueError(f"split {split!r}: expected train, dev or test")
         if arm is not None and arm not in scenario.arms:
             raise ValueError(f"arm {arm!r}: expected one of {', '.join(scenario.arms)}")
         self.usual = {"split": split, "arm": arm or scenario.arms[0], "scene_seed": scene_seed}
-        self.next = 0
+        self.next, self.stride = first, stride
 
     def __call__(self, seed: Optional[int], options: Optional[dict[str, Any]], random: numpy.random.Generator
                  ) -> tuple[str, str, int, int]:
@@ -73,20 +105,22 @@ class _Choice:
             index = random.integers(INDICES - 1)
         elif index is None:
             index = self.next if seed is None else seed
+            if index is None:
+                raise ValueError(f"reset: expected a seed: with stride {self.stride} environment i of several begins at seed + i")
             if index >= INDICES:
                 raise ValueError(f"seed {index}: expected 0 to {INDICES - 1}, as split {chosen['split']} has a scene for each")
-        if chosen["split"] != "train":
-            self.next = int(index) + 1
+            self.next = int(index) + self.stride
         return chosen["split"], chosen["arm"], int(chosen["scene_seed"]), int(index)
 
 
 class SceneEnv(gymnasium.Env[dict[str, Any], numpy.typing.NDArray[numpy.float32]]):
-    """One scenario, by its id or a file of your own (`path`). Actions are within [-1, 1]; `to_metres` says what they mean."""
+    """One scenario, by its id or a file of your own (`path`). Actions are within [-1, 1]; `to_metres` says what they mean.
+    Without a seed, reset() goes on by `stride` test scenes: n environments side by side play each once with a stride of n."""
     metadata = {"render_modes": ["rgb_array"], "render_fps": 1}
 
     def __init__(self, scenario: Union[str, Scenario, None] = None, *, path: Optional[Path] = None, split: str = "train",
                  engine: str = "mujoco", layout: Optional[str] = None, arm: Optional[str] = None, scene_seed: int = 0,
-                 reward_mode: str = "sparse", render_mode: Optional[str] = None) -> None:
+                 reward_mode: str = "sparse", render_mode: Optional[str] = None, stride: int = 1) -> None:
         self._reward = _Reward(reward_mode)
         self.scenario = scenario if isinstance(scenario, Scenario) else Scenario(scenario, path=path)
         self.environment = Environment(self.scenario, engine, layout)
@@ -97,7 +131,7 @@ class SceneEnv(gymnasium.Env[dict[str, Any], numpy.typing.NDArray[numpy.float32]
         self.action_space = spaces.Box(-1, 1, self.scenario.action_space.low.shape, numpy.float32)
         self.task = self.task_description = self.scenario.commands[0]
         self._max_episode_steps = 1  # an episode is one action
-        self._choice = _Choice(self.scenario, split, arm, scene_seed)
+        self._choice = _Choice(self.scenario, split, arm, scene_seed, 0 if stride == 1 else None, stride)
         self._picture: Optional[numpy.typing.NDArray[numpy.uint8]] = None
         self._ready = False
 
@@ -141,7 +175,8 @@ class SceneEnv(gymnasium.Env[dict[str, Any], numpy.typing.NDArray[numpy.float32]
 
 class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
     """`num_envs` of a scenario on C++ threads: gymnasium.make_vec("lgabench/heart-v1", 8, threads=2). Environment i equals a
-    SceneEnv with seed + i. An episode is one action, so each step() ends all: SAME_STEP begins the next episodes at once."""
+    SceneEnv with seed + i and a stride of num_envs. An episode is one action, so each step() ends all: SAME_STEP begins the
+    next episodes at once."""
     metadata = {"render_modes": ["rgb_array"], "render_fps": 1, "autoreset_mode": AutoresetMode.SAME_STEP}
 
     def __init__(self, scenario: Union[str, Scenario, None] = None, num_envs: int = 1, *, path: Optional[Path] = None,
@@ -163,7 +198,7 @@ class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
         self.single_action_space = spaces.Box(-1, 1, self.scenario.action_space.low.shape, numpy.float32)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
-        self._choices = [_Choice(self.scenario, split, arm, scene_seed) for _ in range(num_envs)]
+        self._choices = [_Choice(self.scenario, split, arm, scene_seed, i, num_envs) for i in range(num_envs)]
         self._randoms: dict[int, numpy.random.Generator] = {}
         self._ready = numpy.zeros(num_envs, bool)
         self._batch: Optional[Batch] = None
