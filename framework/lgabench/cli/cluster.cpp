@@ -9,6 +9,7 @@
 
 #include <lgabench/cli/run_plan.hpp>
 #include <lgabench/core/contains.hpp>
+#include <lgabench/core/directories.hpp>
 #include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/run_directory.hpp>
@@ -163,7 +164,7 @@ int write_scripts(ClusterArguments a) {
   write_file(out / "merge.sbatch", merge_script(a, program, out));
   write_file(out / "submit", submit_script(out));
   fs::permissions(out / "submit", fs::perms::owner_exec, fs::perm_options::add);
-  fs::create_directories(out / "logs");
+  make_directories(out / "logs");
   const double expected_s = longest_s(plan, a);
   to_stdout("{} cells in {} elements; the longest takes about {} on {} cores, {}\n", plan.cells.size(), a.elements,
             duration_text(expected_s), a.cpus,

@@ -8,9 +8,9 @@
 #include <ctime>
 #include <fstream>
 #include <set>
-#include <thread>
 
 #include <lgabench/core/processor.hpp>
+#include <lgabench/core/resources.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/harness/cell_plugins.hpp>
 #include <lgabench/host/confine.hpp>
@@ -31,8 +31,8 @@ Json machine() {
   utsname system{};
   ::uname(&system);
   return {{"processor", processor()},
-          {"cores", std::thread::hardware_concurrency()},
-          {"memory_gib", std::round(machine_bytes() / (1 << 30) * 10) / 10},
+          {"cores", usable_cores()},
+          {"memory_gib", std::round(usable_bytes() / (1 << 30) * 10) / 10},
           {"system", fmt::format("{} {}", system.sysname, system.release)}};
 }
 
