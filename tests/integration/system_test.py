@@ -1,7 +1,7 @@
 """A system that refuses: locks, threads, directories, descriptors, signals. Each is named with its cause and a way on, or costs
 nothing.
 
-LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 system_test.py Refusals
+LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 system_test.py Refusing
 """
 import errno
 import os
@@ -18,7 +18,7 @@ RUN = ["run", "q1", "--scenarios", "heart", "--methods", "fixture_constant", "--
 NO_LOCKS = r"cannot be locked: this file system has no locks \(No locks available\); take another directory, or set LGABENCH_NO_LOCKS=1"
 
 
-class Refusals(BesideOneRun):
+class Refusing(BesideOneRun):
     run_of_class = RUN
 
     def refuse(self, calls, number):

@@ -124,12 +124,14 @@ GuardedServer::GuardedServer(const Listening& where, httplib::Headers headers, T
     answer_whole(request);  // one that is malformed comes here first
     if (response.body.empty()) response.set_content(fmt::format("{}\n", response.status), "text/plain");
   });
+  errno = 0;
   if (where.port == 0)
     port_ = pages.bind_to_any_port(where.address);
   else
     port_ = pages.bind_to_port(where.address, where.port) ? where.port : -1;
   if (port_ <= 0)
-    throw InputError(fmt::format("{}:{}: cannot listen there: {}{}", where.address, where.port, std::strerror(errno),
+    throw InputError(fmt::format("{}:{}: cannot listen there: {}{}", where.address, where.port,
+                                 errno == 0 ? "no address of this machine" : std::strerror(errno),
                                  where.port == 0 ? "" : "; take another --port"));
   for (const char* own : {"127.0.0.1", "localhost", "[::1]"}) {
     hosts_.push_back(fmt::format("{}:{}", own, port_));

@@ -17,7 +17,7 @@ import tempfile
 import warnings
 from typing import Any, Callable, Iterable, Iterator, Mapping, Sequence
 
-from lgabench.__main__ import PROGRAM
+from lgabench.__main__ import PROGRAM, ending
 
 FORMS = ("flat", "structured")  # yes or no of each feature; what the command means
 METRICS = ("scenes_exact", "exact_sets", "precision", "recall")
@@ -35,7 +35,7 @@ def suites() -> list[str]:
 def _call(*words: object) -> str:
     done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True)
     if done.returncode:
-        raise ValueError("; ".join(done.stderr.strip().splitlines()[-3:]))
+        raise ValueError("; ".join(done.stderr.strip().splitlines()[-3:]) or f"lgabench {words[0]}: {ending(done.returncode)}")
     return done.stdout
 
 
