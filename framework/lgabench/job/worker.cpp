@@ -9,6 +9,7 @@
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/process.hpp>
+#include <lgabench/core/refused.hpp>
 
 namespace lgabench {
 namespace {
@@ -33,8 +34,8 @@ WorkerAnswers ask_worker(const std::string& verb, const Json& requests) {
   std::string text;
   try {
     answers.problem = run_worker(verb, canonical(requests), text);
-  } catch (const InputError& e) {
-    answers.problem = e.what();
+  } catch (const Refused& e) {  // without the program's path: reports, which people send on, have this text
+    answers.problem = fmt::format("lgabench-worker could not be started: {}", std::strerror(e.reason));
   }
   std::size_t begin = 0;
   for (std::size_t i = 0; i < requests.size(); ++i) {

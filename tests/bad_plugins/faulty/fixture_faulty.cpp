@@ -66,6 +66,7 @@ struct Commas : std::numpunct<char> {
 
 int deeper(int depth) {
   volatile char frame[4096];
+  if (depth < 0) return 0;
   frame[depth % 4096] = 'x';
   return deeper(depth + 1) + frame[0];
 }
