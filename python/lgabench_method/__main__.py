@@ -13,7 +13,13 @@ def main(words):
     if words == ["--serve"]:
         faulthandler.enable()  # a crash in a library leaves a traceback in the log
         from lgabench_method import frames, serve
-        serve.serve(frames.Channel(socket.socket(fileno=3)))
+        channel = frames.Channel(socket.socket(fileno=3))
+        try:
+            serve.serve(channel)
+        except OSError:
+            if channel.is_open():
+                raise
+            os._exit(97)  # the worker says then what that means (host/last_words.hpp)
         sys.stdout.flush()
         os._exit(0)  # all was said: what a library does at exit can neither help nor harm any more
     asks_where = words == ["--interpreter"]  # it reads, too

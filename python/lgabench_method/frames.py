@@ -2,6 +2,7 @@
 import json
 import os
 import socket
+import stat
 import struct
 import zlib
 
@@ -30,6 +31,13 @@ class Channel:
     def __init__(self, connection):
         self.socket = connection
         self.owner = os.getpid()
+
+    def is_open(self):
+        """Whether its descriptor still is a socket: a plugin may close it, or put another file there."""
+        try:
+            return stat.S_ISSOCK(os.fstat(self.socket.fileno()).st_mode)
+        except OSError:
+            return False
 
     def send(self, header, payload=b""):
         if os.getpid() != self.owner:

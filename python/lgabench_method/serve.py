@@ -318,6 +318,9 @@ def _told(channel, kind, call, *arguments):
     """Calls; tells the worker what is thrown. The whole traceback goes to the log."""
     try:
         return call(*arguments)
+    except SystemExit as error:
+        channel.send({"type": "ends", "reason": f"ended its own process by sys.exit(){_place(error)}"})
+        raise
     except MemoryError:
         channel.send({"type": "error", "kind": "memory", "reason": "out of memory"})
     except Exception as error:  # whatever a method raises costs its own call

@@ -116,7 +116,7 @@ class PluginAxes(case.Case):
     def test_one_that_hangs_is_stopped(self):
         self.run_axis(6, "--timeout", "5", expect=3)
         reasons = {cell["scenario"]["id"]: status.get("reason") for cell, status in self.cells("run").values()}
-        self.assertEqual(reasons, {"heart": "stopped after 5 s in phase evaluate", "tiger_colored_object": None})
+        self.assertEqual(reasons, {"heart": "stopped after 5 s in phase evaluate: plugin fixture_axis (perturbation) did not answer", "tiger_colored_object": None})
 
     def test_it_reaches_neither_scenarios_nor_the_method(self):
         self.assertIn("scenario: EACCES, the method's directory: EACCES", self.failure(10))

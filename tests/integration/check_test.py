@@ -3,6 +3,7 @@
 LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 check_test.py CheckPlugin
 """
 import json
+import os
 import subprocess
 import unittest
 
@@ -76,6 +77,9 @@ class CheckPlugin(Case):
             "descriptor": {"descriptors"},
             "unseen": {"act on an unseen command"},
             "forgets": {"saved policy"},
+            "rounding": {"rounding mode"},
+            "far": set(),
+            "nan_loss": {"learn"},
         }.items():
             with self.subTest(how):
                 problems = self.check(UNSOUND, f"how={how}", expect=1 if checks else 0)
@@ -116,7 +120,7 @@ class CheckPlugin(Case):
         self.assertIsNone(process.poll())
         out, _ = process.communicate()
         self.assertRegex(first, r"^still in act after 2\d s; it is stopped after 23 s \(--timeout\)$")
-        self.assertRegex(out, r"(?s)^fixture_faulty 0.1, a method\n  ok +descriptor .*  ok +Selection .*  problem +process +stopped after 23 s in phase act\n")
+        self.assertRegex(out, r"(?s)^fixture_faulty 0.1, a method\n  ok +descriptor .*  ok +Selection .*  problem +process +stopped after 23 s in phase act: plugin fixture_faulty \(method\) did not answer\n")
         self.assertEqual(out.count("\n  ok       Selection "), 1, "each line once")
 
     def test_a_selection_of_which_nothing_can_be_shown_ends_a_cell_and_is_no_fault(self):
@@ -140,7 +144,12 @@ class CheckPlugin(Case):
             ("learn", "throw_int", "learn", "threw int"),
             ("select", "segfault", "process", r"signal 11 \(Segmentation fault\) in phase select"),
             ("act", "spin", "process", "stopped after 3"),
-            ("act", "exit", "process", "exited with 0 in phase act"),
+            ("act", "exit", "process", r"ended its own process by exit\(\): exited with 0 in phase act"),
+            ("act", "quick_exit", "process", "its process ended in the middle of a call: exited with 0 in phase act"),
+            ("act", "noexcept", "process", r'"inside noexcept" was thrown where nothing may be'),
+            ("learn", "recursion", "process", "its stack overflowed"),
+            ("act", "close_socket", "process", "closed descriptor 3, or put another file there"),
+            ("act", "messages", "process", r"does it write to descriptor 3, where lgabench talks with it\?"),
             ("destroy", "throw", "process", r"signal 6 \(Aborted\) in phase destroy the method"),
         ]:
             with self.subTest(where=where, how=how):
@@ -149,8 +158,29 @@ class CheckPlugin(Case):
                 problems = {f["check"]: f["detail"] for f in report["findings"] if f["state"] == "problem"}
                 self.assertRegex(problems.get(check, ""), says)
 
+    def test_one_that_takes_all_memory_meets_a_limit(self):
+        process = subprocess.Popen(command_line("check-plugin", FAULTY, "--json", "--memory", ".5", "--set", "where=learn", "--set", "how=allocate"),
+                                   stdout=subprocess.PIPE, text=True, env=self.environment, cwd=self.dir)
+        out = process.stdout.read()
+        _, status, used = os.wait4(process.pid, 0)
+        process.stdout.close()
+        process.returncode = os.waitstatus_to_exitcode(status)
+        self.assertEqual(process.returncode, 1)
+        problems = {f["check"]: f["detail"] for f in json.loads(out)["findings"] if f["state"] == "problem"}
+        self.assertEqual(problems, {"learn": "plugin fixture_faulty (method): out of memory (the limit is --memory)"})
+        self.assertLess(used.ru_maxrss / (1 << 20), 1.5)
+
+    def test_what_a_run_bears_is_a_note(self):
+        for words, check, says in (((UNSOUND, "--set", "how=far"), "bounds of actions", r"outside of their bounds, the first: \w+ = 1e\+06"),
+                                   ((FIXTURES / "faulty/fixture_fast_math.so",), "compilation", "built with -ffast-math")):
+            report = json.loads(self.call("check-plugin", *words, "--json").stdout)
+            notes = {finding["check"]: finding["detail"] for finding in report["findings"] if finding["state"] == "note"}
+            self.assertRegex(notes[check], says)
+
     def test_names_both_sides_of_a_refusal(self):
         problems = self.check(FIXTURES / "refused/wrong_strings.so")
+        self.assertIn("build it without -D_GLIBCXX_USE_CXX11_ABI=0", problems["descriptor"]["detail"])
+        self.assertIn("build it without -D_GLIBCXX_DEBUG", self.check(FIXTURES / "refused/wrong_iterators.so")["descriptor"]["detail"])
         self.assertRegex(problems["descriptor"]["detail"], r'string ABI "old" \(this program: "cxx11"\)')
         self.assertRegex(self.check(FIXTURES / "refused/missing_symbol.so")["process"]["detail"], "undefined symbol")
         self.assertIn("not a regular file", self.check(self.dir)["descriptor"]["detail"])

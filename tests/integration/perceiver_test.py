@@ -116,7 +116,11 @@ class Perceivers(case.Case):
                 self.assertIn(reason, self.failure(way))
 
     def test_one_that_hangs_is_stopped(self):
-        self.assertIn("stopped after 5 s", self.failure("hangs", "--timeout", "5"))
+        self.assertEqual(self.failure("hangs", "--timeout", "5"),
+                         "stopped after 5 s in phase demonstrate: plugin fixture_reader (perceiver) did not answer")
+
+    def test_one_that_takes_all_memory_is_named(self):
+        self.assertEqual(self.failure("allocates", "--memory", ".5"), "plugin fixture_reader (perceiver): out of memory (the limit is --memory)")
 
     def test_what_there_is_not_is_refused_in_a_line(self):
         said = self.run_names("raed", "--dry-run", expect=2).stderr

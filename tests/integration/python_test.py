@@ -100,6 +100,10 @@ class Mine:
         open(os.path.join(services.files, "curve.csv"), "w").write("1")
         if services.options["how"] == "exit":
             os._exit(5)
+        if services.options["how"] == "sys_exit":
+            raise SystemExit(0)
+        if services.options["how"] == "close":
+            os.close(3)
         return Policy(services.options["how"], demonstrations[0].steps[0].label)
 
 class Policy:
@@ -435,7 +439,8 @@ class PythonMethods(Case):
     def test_what_fails_costs_its_own_cell(self):
         reasons = {"raise": "plugin mine: ValueError: its own failure (mine.py:", "human": "plugin mine: ",
                    "no_utf8": "ValueError: ? is no picture", "log": "services.log.epoch() was called outside of learn()",
-                   "exit": "exited with 5 in phase learn", "nan_loss": "training diverged",
+                   "exit": "exited with 5 in phase learn",
+                   "sys_exit": "ended its own process by sys.exit() (mine.py:", "close": "closed descriptor 3, or put another file there", "nan_loss": "training diverged",
                    "no_selection": "edit() was given str",
                    "second_target": "the second set has the role \"target\"",
                    "curve_name": "a curve's name", "read": "PermissionError"}

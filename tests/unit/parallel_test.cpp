@@ -1,4 +1,5 @@
 #include <lgabench/core/parallel.hpp>
+#include <lgabench/core/resources.hpp>
 
 #include <gtest/gtest.h>
 
@@ -20,7 +21,7 @@ TEST(Parallel, EveryNumberOnce) {
 }
 
 TEST(Parallel, TwoAtOnce) {
-  if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "one core";
+  if (usable_cores() < 2) GTEST_SKIP() << "one core";
   std::atomic<int> arrived = 0;
   std::atomic<bool> met = false;
   const auto late = std::chrono::steady_clock::now() + std::chrono::seconds(20);

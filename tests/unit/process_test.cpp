@@ -54,13 +54,6 @@ TEST(Process, HoldsWhatItIsGivenAndNothingElse) {
   EXPECT_EQ(out.bytes(), "set\n" + fs::canonical(directory.path).string() + "\nclosed\n");
 }
 
-TEST(Process, SaysWhatCouldNotBeStarted) {
-  EXPECT_EQ(exit_status({{"/there/is/no/such/program"}, {}}), not_started);
-  EXPECT_EQ(exit_status({{"true"}, {}, {}, "/there/is/no/such/directory"}), not_started);
-  EXPECT_EQ(exit_status({{"true"}, {}, {}, {}, [] { return false; }}), 126);
-  EXPECT_EQ(exit_status({{"true"}, {}, {}, {}, [] { return true; }}), 0);
-}
-
 TEST(Process, AVariableThatIsSetReplacesOurs) {
   ::setenv("LGABENCH_A", "ours", 1);
   ::setenv("LGABENCH_AB", "ours", 1);

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -10,6 +9,7 @@
 #include <string_view>
 
 #include <lgabench/abstraction/asked_model.hpp>
+#include <lgabench/core/file_lock.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -64,11 +64,12 @@ Cassette::Turn::Turn(Cassette& cassette, const std::function<void(const std::str
   };
   if (lock_ < 0) refuse("cannot be written");
   try {
-    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && waiting)
-      waiting(fmt::format("{}: another process is filling this cassette; waiting for its replies",
-                          cassette.file_.string()));
-    while (::flock(lock_, LOCK_EX) != 0)
-      if (errno != EINTR) refuse("cannot be locked");
+    if (!try_lock(lock_, Lock::exclusive, cassette.file_)) {
+      if (waiting)
+        waiting(fmt::format("{}: another process is filling this cassette; waiting for its replies",
+                            cassette.file_.string()));
+      wait_for_lock(lock_, Lock::exclusive, cassette.file_);
+    }
     if (!cassette.read() && ::ftruncate(lock_, static_cast<off_t>(cassette.size_)) != 0) refuse("cannot be written");
   } catch (...) {
     ::close(lock_);

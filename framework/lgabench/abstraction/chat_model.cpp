@@ -17,6 +17,7 @@
 #include <lgabench/abstraction/meaning_reply.hpp>
 #include <lgabench/core/base64.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/refused.hpp>
 
 namespace lgabench {
 namespace {
@@ -109,11 +110,13 @@ void ChatLanguageModel::ask(const std::vector<Request>& requests, const std::str
     changed.notify_one();
   };
 
-  std::vector<std::thread> threads;
-  working = std::min(requests.size(), static_cast<std::size_t>(std::max(options_.concurrency, 1)));
-  for (std::size_t i = working; i > 0; --i) threads.emplace_back(work);
+  const std::size_t wanted = std::min(requests.size(), static_cast<std::size_t>(std::max(options_.concurrency, 1)));
+  working = wanted;
+  std::vector<std::thread> threads = start_helpers(wanted, work);
+  if (threads.empty()) throw Refused("no thread can be started that asks", EAGAIN);
   {
     std::unique_lock lock(mutex);
+    working -= wanted - threads.size();
     std::size_t told = 0;
     while (working > 0) {
       const bool quiet = changed.wait_for(lock, std::chrono::seconds(10)) == std::cv_status::timeout;

@@ -32,6 +32,17 @@ std::vector<std::string> left_behind(const std::function<std::vector<std::string
   return left;
 }
 
+void judge_arithmetic(CheckReport& report, const ProcessState& state) {
+  report.judge(
+      "rounding mode",
+      !state.flushed  ? "the plugin cleared flush-to-zero"
+      : !state.rounds ? "the plugin left another rounding mode (fesetround())"
+                      : "",
+      "to nearest, flush-to-zero kept",
+      "leave the processor's control register as it is: other modes change results, and subnormal numbers make "
+      "training 20 times slower");
+}
+
 void judge_leftovers(CheckReport& report, const std::function<ProcessState()>& now) {
   ProcessState state;
   const std::vector<std::string> threads = left_behind([&] { return (state = now()).threads; });

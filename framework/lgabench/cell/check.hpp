@@ -35,6 +35,9 @@ CheckReport check_perceiver(HostJob job, const CheckPhase& phase);
 /// Which of the threads or processes `now` are still there after half a second.
 std::vector<std::string> left_behind(const std::function<std::vector<std::string>()>& now);
 
+/// Adds a finding on the processor's arithmetic, as the plugin left it after its calls.
+void judge_arithmetic(CheckReport& report, const ProcessState& state);
+
 /// Adds a finding on what the plugin leaves behind: `now` is what the process holds beyond what it held before the
 /// plugin came.
 void judge_leftovers(CheckReport& report, const std::function<ProcessState()>& now);

@@ -168,11 +168,30 @@ struct Kept {
   std::vector<std::string> actions;
 };
 
+// How many numbers of actions were outside of their bounds, and one of them in words.
+struct Outside {
+  int numbers = 0;
+  std::string example;
+
+  void note(const ActionSpace& space, const Action& action) {
+    for (std::size_t i = 0; i < space.size(); ++i) {
+      const ActionNumber& one = space.numbers[i];
+      // Of a rotation the length does not matter.
+      const auto turns = [i](const std::vector<std::size_t>& rotation) { return contains(rotation, i); };
+      if (std::any_of(space.rotations.begin(), space.rotations.end(), turns)) continue;
+      if (action[i] >= one.low && action[i] <= one.high) continue;
+      if (numbers++ == 0)
+        example = fmt::format("{} = {:g} {}, of {:g} to {:g}", one.name, action[i], one.unit, one.low, one.high);
+    }
+  }
+};
+
 // The action's numbers as text. @throws MethodError where it cannot be carried out.
-std::string action_text(const Actor& actor, const Bench& bench, const Sight& sight) {
+std::string action_text(const Actor& actor, const Bench& bench, const Sight& sight, Outside* outside = nullptr) {
   const Move move = actor(*bench.environment, sight.scene, sight.observation);
   const ActionSpace& space = bench.environment->action_space();
   executable(space, move.action);
+  if (outside) outside->note(space, move.action);
   std::string text;
   for (const double value : as_stored(space, move.action)) text += fmt::format("{:a} ", value);
   return text;
@@ -221,7 +240,7 @@ class MethodCheck {
     } catch (const std::exception& e) {
       report_.problem(doing_, e.what() + undeclared_option(e.what()), "this call must succeed: a run makes it too");
     }
-    if (is_library()) judge_process();
+    if (is_library() && !method_.is_broken()) judge_process();  // broken: what broke it is the finding
     judge_processes();
     note_refused_calls();
     report_.ok("time", fmt::format("select {:.3f} s, learn {:.2f} s from {} demonstrations, act {:.2f} ms",
@@ -250,9 +269,7 @@ class MethodCheck {
     method_.drop_policy();
     method_.drop_method();
     judge_leftovers(report_, [this] { return method_.state(); });
-    report_.judge("rounding mode", method_.state().flushed ? "" : "the plugin cleared flush-to-zero",
-                  "flush-to-zero kept",
-                  "leave the processor's control register as it is: subnormal numbers make training 20 times slower");
+    judge_arithmetic(report_, method_.state());
   }
 
   // What it started, and nobody waited for.
@@ -381,7 +398,7 @@ class MethodCheck {
   }
 
   std::string act(const std::string& what, const Actor& actor, const Bench& bench, const Sight& sight) {
-    return timed(what, [&] { return action_text(actor, bench, sight); });
+    return timed(what, [&] { return action_text(actor, bench, sight, &outside_); });
   }
 
   void judge_selection(const Selected& selected, int asked, const Scenario& scenario) {
@@ -465,6 +482,12 @@ class MethodCheck {
                     differs(true) ? "act() gave another action when scenes came in reverse order" : "",
                     "changes no action", "keep nothing from one episode to the next, or drop it in reset()");
     report_.ok("actions", fmt::format("finite, {} numbers each", bench.environment->action_space().size()));
+    if (outside_.numbers > 0)
+      report_.note("bounds of actions",
+                   fmt::format("act() gave {} numbers outside of their bounds, the first: {}; a run carries out the "
+                               "nearest bound",
+                               outside_.numbers, outside_.example),
+                   "keep actions within services.actions, or this is what the policy learned to do");
 
     if (!is_library()) return;
     constexpr int calls = 200, bearable = 256;  // bytes a call
@@ -500,6 +523,7 @@ class MethodCheck {
   std::map<std::string, double> seconds_;  // of the last call of each kind
   CheckReport report_;
   std::optional<Kept> kept_;
+  Outside outside_;
   HostedMethod method_;
 };
 

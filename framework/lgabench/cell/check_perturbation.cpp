@@ -73,6 +73,7 @@ void judge_process(HostedPerturbation& process, bool is_library, CheckReport& re
   if (is_library) {
     process.drop();
     judge_leftovers(report, [&process] { return process.state(); });
+    judge_arithmetic(report, process.state());
   }
   const std::vector<std::string> refused = process.refused_calls();
   if (!refused.empty())

@@ -271,16 +271,18 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   phases.begin("evaluate");
   const std::vector<TestScene> tests = test_scenes(scenario, cell, method && !policy, selected);
   const bool perturbs = cell.perturbs();
+  const std::string& acts = cell.method.acts ? cell.method.acts->id : id;  // who is at fault for an action
   Actor actor;
   if (policy && perturbs)
     actor = policy_actor(
-        *policy, [&](const Scene& scene) { return instruction_in(scene, scenario, cell, selected.instructions); }, id);
+        *policy, [&](const Scene& scene) { return instruction_in(scene, scenario, cell, selected.instructions); },
+        acts);
   else if (policy)
-    actor = policy_actor(*policy, selected.instructions, id);
+    actor = policy_actor(*policy, selected.instructions, acts);
   else if (!method)
     actor = reference_actor(id, shown_to(cell, scenario));
   std::optional<Showing> showing;
-  if (policy) showing.emplace(*policy, id);
+  if (policy) showing.emplace(*policy, acts);
   std::vector<PerturbedEpisode> perturbed;
   const Actor read = actor ? reading_actor(reading, actor) : Actor();
   const Actor recorded = perturbs && actor ? recording_actor(actor, reading, scenario, cell, selected.instructions,
@@ -295,7 +297,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   const Files of_method = processes ? processes->files() : Files();  // from now on the method may be told the truth
   const std::string kept = policy_text(job, policy.get());
   const std::vector<Instruction> truth = true_instructions(scenario);
-  const Actor with_truth = policy ? policy_actor(*policy, truth, id) : Actor();
+  const Actor with_truth = policy ? policy_actor(*policy, truth, acts) : Actor();
   if (job.attributed && selecting.is_attributable())
     attribute_failures(*environment, tests, read, with_truth, episodes, reading ? actor : Actor());
   if (processes) guarded(id, [processes = processes] { processes->end(); });

@@ -32,7 +32,8 @@ void Selecting::revise(Method& method, std::vector<Demonstration>& demonstration
 
 std::unique_ptr<Policy> Selecting::learn(Method& method, const std::vector<Demonstration>& demonstrations,
                                          Services& services) {
-  return lgabench::learn(method, cell_.method.id, demonstrations, services, current_);
+  const std::string& learns = cell_.method.acts ? cell_.method.acts->id : cell_.method.id;
+  return lgabench::learn(method, learns, demonstrations, services, current_);
 }
 
 void Selecting::make_errors() {

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/directories.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/forecast.hpp>
@@ -59,7 +60,7 @@ fs::path default_cache() {
        {std::pair{"LGABENCH_CACHE", ""}, {"XDG_CACHE_HOME", "lgabench"}, {"HOME", ".cache/lgabench"}})
     if (const char* base = std::getenv(variable); base && *base)
       return *below ? fs::path(base) / below : fs::path(base);
-  return fs::temp_directory_path() / "lgabench-cache";
+  return temporary_directory() / "lgabench-cache";
 }
 
 void add_cache(CLI::App& app, int& exit) {

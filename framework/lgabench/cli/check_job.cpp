@@ -21,11 +21,13 @@ void check(const JsonReader& reader, const Messages& messages) {
   const auto on_method = [&] {
     HostJob method{*job.method, job.environment, job.options, 0, job.scratch};
     method.perturb = job.perturb;
+    method.memory_bytes = job.limits.data_bytes;
     return check_method(method, job.engine, phase);
   };
   const auto on_perturbation = [&] {
     HostJob perturbation{*job.perturbation, job.environment, Json::object(), 0, job.scratch};
     perturbation.perturb = job.perturb;
+    perturbation.memory_bytes = job.limits.data_bytes;
     return job.perturbation->kind == "perceiver" ? check_perceiver(perturbation, phase)
                                                  : check_perturbation(perturbation, phase);
   };

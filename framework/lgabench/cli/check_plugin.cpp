@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -15,6 +16,7 @@
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/perturbations.hpp>
+#include <lgabench/core/resources.hpp>
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
@@ -30,7 +32,7 @@ namespace {
 struct CheckPluginArguments {
   std::string file, python = "python3", environment;
   std::vector<std::string> settings;
-  double timeout_s = 600;
+  double timeout_s = 600, memory_gib = 0;
   bool json = false;
 };
 
@@ -87,6 +89,19 @@ class Watching {
   std::size_t printed_ = 0;
 };
 
+// A plugin that takes all memory must not take the whole machine's.
+double check_memory_gib(double asked) {
+  constexpr double gib = 1 << 30, usual = 4;
+  return asked > 0 ? asked : std::min(usual, usable_bytes() / gib / 2);
+}
+
+// What a plugin that is no method's declares of how it was compiled.
+void note_compilation(const PluginInfo& plugin, CheckReport& report) {
+  if (plugin.fingerprint.find(";arithmetic=fast") == std::string::npos) return;
+  report.note("compilation", "built with -ffast-math (or -Ofast): another compiler or processor may give other results",
+              "build it without: results are then the same wherever the same numbers are computed");
+}
+
 // Two processes use the plugin: their findings, and whether they agree. Returns how many findings are printed already.
 std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const CheckPluginArguments& a,
                   CheckReport& report) {
@@ -96,6 +111,7 @@ std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
       report.problem("id", fmt::format("{} is also the id of {}", plugin.id, other.file.string()),
                      "take another id: of two plugins with one id, the later is refused");
 
+  note_compilation(plugin, report);
   const std::vector<std::string> own = perturbation_ids({});
   if (plugin.kind == "perturbation" && contains(own, plugin.id))
     report.problem("id", fmt::format("{} is an axis of lgabench's own", plugin.id),
@@ -105,7 +121,7 @@ std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
     report.problem("id", fmt::format("{} is a word of --names", plugin.id), "take another: it would never be asked");
 
   const Scratch scratch("check");
-  const PoolOptions pool{1, a.timeout_s, 0};
+  const PoolOptions pool{1, a.timeout_s, check_memory_gib(a.memory_gib)};
   const PluginInfo& engine = plugin.kind == "engine" ? plugin : default_engine(catalogue);
   const Json options = options_of(plugin, a.settings);
   std::array<fs::path, 2> reports{scratch.path / "first.json", scratch.path / "second.json"};
@@ -136,7 +152,8 @@ std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
     if (i == 0) report.findings.insert(report.findings.end(), found[0].findings.begin(), found[0].findings.end());
     if (ends[i].exit_code == 0 && ends[i].signal == 0 && fs::exists(reports[i])) continue;
     const bool said_why = ends[i].complaint && ends[i].complaint->signal == 0;
-    const auto tail = log_tail(scratch.path / fmt::format("log{}.txt", i));
+    auto tail = log_tail(scratch.path / fmt::format("log{}.txt", i));
+    if (ends[i].complaint && !tail.empty()) tail.pop_back();  // the worker's own line, which says the same
     report.problem("process", why_it_ended(ends[i], a.timeout_s).reason,
                    said_why || tail.empty() ? "" : fmt::format("it printed: {}", fmt::join(tail, "\n")));
     if (i == 0) return watching.printed();
@@ -171,7 +188,8 @@ int check_plugin(const CheckPluginArguments& a) {
     report.problem("descriptor", e.what(),
                    is_python_method(a.file) ? "see docs/add-a-method.md"
                    : in_options             ? "correct the options that LGABENCH_METHOD, or the like, is given"
-                                            : "build it with lgabench_add_plugin() from this very lgabench's package");
+                                            : "build it with lgabench_add_plugin() from this very lgabench's package, "
+                                              "and no definition that changes the standard library");
   }
   const bool good = !has_problem(report);
   if (a.json) {
@@ -201,6 +219,9 @@ void add_check_plugin(CLI::App& app, int& exit) {
               one_of("environment", environment_ids()));
   verb.option("--timeout SECONDS", a->timeout_s, "Time limit of each of the two processes, in seconds", within(1, 1e6),
               with_default);
+  verb.option("--memory GIB", a->memory_gib,
+              "Memory limit of each, in GiB (default: 4, or half of the job's memory where that is less)",
+              within(.1, 1e6));
   verb.option("--json", a->json, "Print one JSON object");
   verb->footer(
       "Two fresh processes use the plugin as cells do, with the same seed. Exit 1 if there is a problem.\nWithout "

@@ -9,6 +9,7 @@
 
 #include <lgabench/cli/run_plan.hpp>
 #include <lgabench/core/contains.hpp>
+#include <lgabench/core/directories.hpp>
 #include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/run_directory.hpp>
@@ -174,7 +175,7 @@ int write_scripts(ClusterArguments a) {
   write_file(out / "merge.sbatch", merge_script(a, program, out));
   write_file(out / "submit", submit_script(out, a.elements));
   fs::permissions(out / "submit", fs::perms::owner_exec, fs::perm_options::add);
-  fs::create_directories(out / "logs");
+  make_directories(out / "logs");
   const Forecast longest = longest_of(planned, a);
   const double expected_s = longest.wall_s;
   to_stdout("{} cells in {} elements; the longest takes {} on {} cores, {}\n", plan.cells.size(), a.elements,

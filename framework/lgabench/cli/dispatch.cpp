@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <regex>
 #include <string_view>
 
@@ -67,6 +68,13 @@ std::string explained(const CLI::App& app, const CLI::ParseError& e) {
   return fmt::format("unknown command \"{}\"{}; see {} --help", words.front(), near, name);
 }
 
+// "PATH: errno's words", of the current directory where it names no path.
+std::string text_of(const fs::filesystem_error& e) {
+  std::string where = e.path1().empty() ? "the current directory" : e.path1().string();
+  if (!e.path2().empty()) where += ", " + e.path2().string();
+  return fmt::format("{}: {}", where, e.code().message());
+}
+
 }  // namespace
 
 int dispatch(CLI::App& app, int argc, char** argv, const int& exit) {
@@ -76,6 +84,7 @@ int dispatch(CLI::App& app, int argc, char** argv, const int& exit) {
         fmt::format("{} {}\n", painted(stderr, Colour::red, app.get_name() + ":"), printable(what.substr(0, longest))));
     return status;
   };
+  ::signal(SIGXFSZ, SIG_IGN);  // a file over the limit (ulimit -f) is an error, not the end
   try {
     try {
       app.parse(argc, argv);
@@ -96,7 +105,7 @@ int dispatch(CLI::App& app, int argc, char** argv, const int& exit) {
   } catch (const InputError& e) {
     return complain(e.what(), usage);
   } catch (const fs::filesystem_error& e) {
-    return complain(e.what(), usage);
+    return complain(text_of(e), usage);
   } catch (const Json::exception& e) {
     return complain(fmt::format("JSON with a member of another type than expected: {}", e.what()), usage);
   } catch (const std::exception& e) {

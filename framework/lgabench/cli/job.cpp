@@ -5,20 +5,27 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <iterator>
 #include <new>
 
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/refused.hpp>
+#include <lgabench/host/host_session.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench::cli {
 namespace {
 
+// A lower limit that is there already stays.
 void limit(int resource, long long value) {
-  const rlimit both{static_cast<rlim_t>(value), static_cast<rlim_t>(value)};
-  ::setrlimit(static_cast<__rlimit_resource>(resource), &both);
+  const auto which = static_cast<__rlimit_resource>(resource);
+  rlimit both{};
+  if (::getrlimit(which, &both) != 0) throw Refused("getrlimit");
+  both.rlim_cur = both.rlim_max = std::min(static_cast<rlim_t>(value), both.rlim_cur);
+  if (::setrlimit(which, &both) != 0) throw Refused("setrlimit");
 }
 
 // And sets the limits that it names.
@@ -44,6 +51,8 @@ void Messages::at(const PhaseCount& place) const {
   send(to_json(place));
 }
 
+void Messages::awaits(const std::string& whom) const { send(to_json(Waiting{whom})); }
+
 void Messages::complain(Complaint complaint) const {
   constexpr std::size_t longest = 2000;  // whatever a plugin throws, the line has room in the pipe
   complaint.reason = complaint.reason.substr(0, longest);
@@ -58,6 +67,7 @@ void Messages::send(const Json& message) const {
 
 void do_job(const std::function<void(const JsonReader& job, const Messages& messages)>& work) {
   const Messages messages;
+  tell_who_is_awaited([&messages](const std::string& whom) { messages.awaits(whom); });
   try {
     const Json job = read_job();
     work(JsonReader(job, "job"), messages);
@@ -71,6 +81,9 @@ void do_job(const std::function<void(const JsonReader& job, const Messages& mess
   } catch (const PluginError& e) {
     messages.complain({e.what(), true, 0, true});
     throw;
+  } catch (const PluginOutOfMemory& e) {
+    messages.complain({e.what(), true});
+    throw MethodError(e.what());
   } catch (const std::bad_alloc&) {
     const MethodError e("out of memory (the limit is --memory)");
     messages.complain({e.what(), true});

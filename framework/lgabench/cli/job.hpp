@@ -15,6 +15,8 @@ class Messages {
  public:
   Messages();
   void at(const PhaseCount& place) const;
+  /// Whose plugin's process has not answered for long; "": none.
+  void awaits(const std::string& whom) const;
   void complain(Complaint complaint) const;
   /// The last phase that was told, or "".
   const std::string& phase() const { return phase_; }

@@ -285,7 +285,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
                             CLI::Range(1, 1000000), with_default);
   verb.option("--fresh", a->verify.fresh, "verify: play on new test scenes, and compare success")->excludes(cells);
   verb.option("--by NAME", a->verify.by, "verify, supersede: your name, as the one who computes the cells");
-  verb.option("--jobs N", a->jobs, "verify, scenes: cells to compute at once (default: one per core)",
+  verb.option("--jobs N", a->jobs, "verify, scenes: cells to compute at once (default: one for each core that the job has)",
               CLI::Range(1, 4096));
   verb.option("--timeout SECONDS", a->verify.pool.timeout_s, "verify, scenes: seconds after which a cell is stopped",
               within(1, 1e7), with_default);

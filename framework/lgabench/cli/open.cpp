@@ -11,6 +11,7 @@
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/process.hpp>
+#include <lgabench/core/refused.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/document/writers.hpp>
 #include <lgabench/http/page_server.hpp>
@@ -32,10 +33,13 @@ void show(const std::string& address) {
   const bool has_display = is_set("DISPLAY") || is_set("WAYLAND_DISPLAY");
   if (!is_set("BROWSER") && !has_display) return;
   const std::string browser = is_set("BROWSER") ? std::getenv("BROWSER") : "xdg-open";
-  const int null = ::open("/dev/null", O_RDWR | O_CLOEXEC);
-  wait_for(
-      start_process({{"setsid", "--fork", browser, address}, environment_with({}), {{null, 0}, {null, 1}, {null, 2}}}));
-  ::close(null);
+  const Descriptor null(::open("/dev/null", O_RDWR | O_CLOEXEC));
+  try {
+    wait_for(start_process(
+        {{"setsid", "--fork", browser, address}, environment_with({}), {{null.fd, 0}, {null.fd, 1}, {null.fd, 2}}}));
+  } catch (const Refused& e) {
+    to_stderr("no browser was opened: {}\n", e.what());
+  }
 }
 
 void find_runs(const fs::path& directory, int depth, std::vector<fs::path>& runs) {

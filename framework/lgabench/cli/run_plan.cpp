@@ -353,7 +353,7 @@ void add_run_options(Verb& verb, RunArguments& a) {
   verb.below("How cells are computed");
   add_pool(verb, a.jobs, a.timeout_s, rare);
   verb.option("--memory GIB", a.memory_gib,
-              "Memory limit of a cell, in GiB (default: its share of the machine's memory, at least 4)",
+              "Memory limit of a cell, in GiB (default: its share of the job's memory, at least 4 where it has them)",
               within(.1, 1e6), rare);
   add_python(verb, a.python, rare);
   add_plugin_path(verb, a.plugin_path, any_plugin);

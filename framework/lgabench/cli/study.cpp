@@ -13,6 +13,7 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/filled.hpp>
 #include <lgabench/core/json.hpp>
+#include <lgabench/core/refused.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/document/writers.hpp>
 #include <lgabench/http/page_server.hpp>
@@ -126,7 +127,7 @@ int rehearse(const StudyArguments& a) {
   ::umask(077);
   study::Study study(a.out, study::read_protocol(file), file, study::Kind::rehearsal);
   study::Server server(study, study::load_site(study.protocol()), {});
-  std::thread serving([&server] { server.run(); });
+  std::thread serving = start_thread([&server] { server.run(); });
   std::exception_ptr failure;
   try {
     for (int i = 0; i < a.people; ++i) study::simulate_person(study.protocol(), server.port(), study.slots());

@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <functional>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/json.hpp>
+#include <lgabench/core/resources.hpp>
 #include <lgabench/core/scenario_files.hpp>
 #include <lgabench/core/suggest.hpp>
 
@@ -127,14 +127,13 @@ inline void add_plugin_path(Verb& verb, std::vector<fs::path>& paths,
 /// --jobs and --timeout, as every verb has them that computes cells of its own.
 template <class... More>
 void add_pool(Verb& verb, int& jobs, double& timeout_s, More... of_timeout) {
-  verb.option("--jobs N", jobs, "Cells to compute at once (default: one per core)", CLI::Range(1, 4096));
+  verb.option("--jobs N", jobs, "Cells to compute at once (default: one for each core that the job has)",
+              CLI::Range(1, 4096));
   verb.option("--timeout SECONDS", timeout_s, "Seconds after which a cell is stopped and counts as failed",
               within(1, 1e7), with_default, of_timeout...);
 }
-/// How many cells to compute at once, where --jobs is that; 0: as many as there are cores.
-inline int jobs_of(int asked) {
-  return asked != 0 ? asked : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-}
+/// How many cells to compute at once, where --jobs is that; 0: as many as usable_cores().
+inline int jobs_of(int asked) { return asked != 0 ? asked : usable_cores(); }
 
 /// --python, as every verb has it that takes plugins in Python.
 template <class... More>

@@ -7,6 +7,9 @@
 #include <thread>
 #include <vector>
 
+#include <lgabench/core/refused.hpp>
+#include <lgabench/core/resources.hpp>
+
 namespace lgabench {
 
 void in_parallel(std::size_t n, const std::function<void(std::size_t)>& work) {
@@ -27,9 +30,8 @@ void in_parallel(std::size_t n, const std::function<void(std::size_t)>& work) {
       }
     }
   };
-  const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
-  std::vector<std::thread> others;
-  for (std::size_t i = 1; i < std::min(cores, n); ++i) others.emplace_back(work_on);
+  if (n == 0) return;
+  std::vector<std::thread> others = start_helpers(std::min<std::size_t>(usable_cores(), n) - 1, work_on);
   work_on();
   for (std::thread& thread : others) thread.join();
   if (failure) std::rethrow_exception(failure);

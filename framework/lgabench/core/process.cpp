@@ -1,7 +1,8 @@
 #include <lgabench/core/process.hpp>
 
 #include <fcntl.h>
-#include <fmt/format.h>
+#include <linux/close_range.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -10,9 +11,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
-#include <cstring>
 
-#include <lgabench/core/error.hpp>
+#include <lgabench/core/refused.hpp>
 
 namespace lgabench {
 namespace {
@@ -23,6 +23,46 @@ std::vector<char*> pointers(const std::vector<std::string>& words) {
   for (const std::string& word : words) all.push_back(const_cast<char*>(word.c_str()));
   all.push_back(nullptr);
   return all;
+}
+
+constexpr int not_started = 127;  // an exit status, as a shell's
+
+// How far a process came on the way to its program, and errno: as it tells its parent. Nothing where it got there.
+enum class Step { done, directory, in_child, descriptors, program };
+struct Stopped {
+  Step step = Step::done;
+  int reason = 0;
+};
+
+// Waits until the program runs, or the process has said why it does not.
+Stopped told_by(const Descriptor& pipe) {
+  Stopped stopped;
+  ssize_t n = 0;
+  while ((n = ::read(pipe.fd, &stopped, sizeof stopped)) < 0 && errno == EINTR) {
+  }
+  return n == sizeof stopped ? stopped : Stopped();
+}
+
+std::string said_of(Step step, const ProcessStart& start) {
+  const std::string program = start.words.front();
+  switch (step) {
+    case Step::directory:
+      return start.directory.string() + ": cannot be entered";
+    case Step::in_child:
+      return program + ": cannot be prepared";
+    case Step::descriptors:
+      return program + ": cannot be given its files";
+    default:
+      return program + ": cannot be started";
+  }
+}
+
+// Whoever started this program may ignore the ends of children, as a shell's trap '' CHLD does: none could be waited
+// for.
+void keep_ends_of_children() {
+  struct sigaction now {};
+  if (::sigaction(SIGCHLD, nullptr, &now) == 0 && (now.sa_handler == SIG_IGN || (now.sa_flags & SA_NOCLDWAIT) != 0))
+    ::signal(SIGCHLD, SIG_DFL);
 }
 
 }  // namespace
@@ -44,21 +84,44 @@ pid_t start_process(const ProcessStart& start) {
   int last = 2;
   for (const auto& [ours, its] : start.descriptors) last = std::max(last, its);
   std::vector<int> spare(start.descriptors.size());
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0) throw Refused("pipe");
+  const Descriptor reading(ends[0]);
+  Descriptor writing(ends[1]);
+  keep_ends_of_children();
   const pid_t parent = ::getpid();
 
   const pid_t pid = ::fork();
-  if (pid < 0) throw InputError(fmt::format("fork: {}", std::strerror(errno)));
-  if (pid > 0) return pid;
+  if (pid < 0) throw Refused("fork");
+  if (pid > 0) {
+    writing.close();
+    if (const auto [step, reason] = told_by(reading); step != Step::done) {
+      wait_for(pid);
+      throw Refused(said_of(step, start), reason);
+    }
+    return pid;
+  }
+  const auto give_up = [&writing](Step step) {
+    const Stopped stopped{step, errno};
+    [[maybe_unused]] const ssize_t told = ::write(writing.fd, &stopped, sizeof stopped);  // or nobody listens any more
+    ::_exit(not_started);
+  };
+  ::signal(SIGXFSZ, SIG_DFL);  // which lgabench ignores
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(not_started);  // which died before that took effect
-  if (!start.directory.empty() && ::chdir(start.directory.c_str()) != 0) ::_exit(not_started);
-  if (start.in_child && !start.in_child()) ::_exit(126);
+  if (!start.directory.empty() && ::chdir(start.directory.c_str()) != 0) give_up(Step::directory);
+  errno = 0;
+  if (start.in_child && !start.in_child()) give_up(Step::in_child);
   // By way of numbers beyond all that are wanted: one may be another's, and dup2 onto itself would keep CLOEXEC.
   for (std::size_t i = 0; i < spare.size(); ++i)
-    spare[i] = ::fcntl(start.descriptors[i].first, F_DUPFD_CLOEXEC, last + 1);
-  for (std::size_t i = 0; i < spare.size(); ++i) ::dup2(spare[i], start.descriptors[i].second);
-  ::syscall(SYS_close_range, static_cast<unsigned>(last + 1), ~0u, 0u);
+    if ((spare[i] = ::fcntl(start.descriptors[i].first, F_DUPFD_CLOEXEC, last + 1)) < 0) give_up(Step::descriptors);
+  if (writing.fd <= last && (writing.fd = ::fcntl(writing.fd, F_DUPFD_CLOEXEC, last + 1)) < 0) ::_exit(not_started);
+  for (std::size_t i = 0; i < spare.size(); ++i)
+    if (::dup2(spare[i], start.descriptors[i].second) < 0) give_up(Step::descriptors);
+  // Before Linux 5.11 only what lgabench opened itself, with O_CLOEXEC, is closed.
+  ::syscall(SYS_close_range, static_cast<unsigned>(last + 1), ~0u, CLOSE_RANGE_CLOEXEC);
   ::execvpe(words[0], words.data(), variables.data());
+  give_up(Step::program);
   ::_exit(not_started);
 }
 
@@ -67,6 +130,31 @@ int wait_for(pid_t pid) {
   while (::waitpid(pid, &status, 0) < 0 && errno == EINTR) {
   }
   return status;
+}
+
+Descriptor file_in_memory(std::string_view bytes) {
+  Descriptor file(::memfd_create("lgabench", MFD_CLOEXEC));
+  if (file.fd < 0) throw Refused("memfd_create");
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(file.fd, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw Refused("a file in memory cannot be written");
+    bytes.remove_prefix(static_cast<std::size_t>(n));
+  }
+  if (::lseek(file.fd, 0, SEEK_SET) != 0) throw Refused("a file in memory cannot be read");
+  return file;
+}
+
+std::string bytes_of(const Descriptor& file) {
+  std::string bytes;
+  char block[1 << 16];
+  for (;;) {
+    const ssize_t n = ::pread(file.fd, block, sizeof block, static_cast<off_t>(bytes.size()));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw Refused("a file in memory cannot be read");
+    if (n == 0) return bytes;
+    bytes.append(block, static_cast<std::size_t>(n));
+  }
 }
 
 }  // namespace lgabench

@@ -11,7 +11,9 @@
 #include <cstring>
 #include <utility>
 
+#include <lgabench/core/directories.hpp>
 #include <lgabench/core/error.hpp>
+#include <lgabench/core/file_lock.hpp>
 
 namespace lgabench {
 namespace {
@@ -31,6 +33,7 @@ void remove_abandoned(const fs::path& prefix) {
     if (entry->path().filename().string().rfind(prefix.filename().string(), 0) != 0) continue;
     const int directory = open_own(entry->path());
     if (directory < 0) continue;
+    // Without locks nobody can tell that it is abandoned.
     if (::flock(directory, LOCK_EX | LOCK_NB) == 0) fs::remove_all(entry->path(), ignored);
     ::close(directory);
   }
@@ -39,19 +42,28 @@ void remove_abandoned(const fs::path& prefix) {
 }  // namespace
 
 Scratch::Scratch(const std::string& name) {
-  const fs::path prefix = fs::temp_directory_path() / ("lgabench-" + name + ".");
+  const fs::path prefix = temporary_directory() / ("lgabench-" + name + ".");
   remove_abandoned(prefix);
   while (lock_ < 0) {
     std::string made = prefix.string() + "XXXXXX";
-    if (!::mkdtemp(made.data())) throw InputError(fmt::format("{}: {}", made, std::strerror(errno)));
+    if (!::mkdtemp(made.data()))
+      throw InputError(fmt::format("{}: cannot be made: {}; set TMPDIR to a directory that can be written", made,
+                                   std::strerror(errno)));
     path = made;
     // Another process may take it for abandoned before it is locked, or before it is opened.
     if ((lock_ = open_own(made)) < 0) {
       if (errno != ENOENT) throw InputError(fmt::format("{}: {}", made, std::strerror(errno)));
       continue;
     }
+    try {
+      wait_for_lock(lock_, Lock::exclusive, made);
+    } catch (...) {
+      fs::remove_all(made);
+      ::close(lock_);
+      throw;
+    }
     struct stat locked {};
-    if (::flock(lock_, LOCK_EX) == 0 && ::fstat(lock_, &locked) == 0 && locked.st_nlink > 0) break;
+    if (::fstat(lock_, &locked) == 0 && locked.st_nlink > 0) break;
     ::close(std::exchange(lock_, -1));
   }
 }

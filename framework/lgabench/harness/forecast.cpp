@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <map>
-#include <thread>
 #include <tuple>
+
+#include <lgabench/core/resources.hpp>
 
 namespace lgabench {
 namespace {
@@ -82,7 +83,7 @@ Forecast forecast(const std::vector<const Cell*>& complete, const std::vector<co
   for (const Cell* cell : missing) add(*cell, false);
   for (const Cell* cell : complete) add(*cell, true);
   for (const auto& each : demonstrations) all.cache_bytes += demonstration_bytes * each.second;
-  const double cores = std::min<double>(jobs, std::max(1u, std::thread::hardware_concurrency()));
+  const double cores = std::min(jobs, usable_cores());
   all.wall_s = std::max(all.work_s / cores, all.longest_s);
   return all;
 }

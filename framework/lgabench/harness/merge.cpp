@@ -3,17 +3,19 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <map>
 #include <optional>
 #include <set>
 #include <string_view>
 
+#include <lgabench/core/descriptor.hpp>
+#include <lgabench/core/file_lock.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/plain_directory.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -33,21 +35,11 @@ class Part {
  public:
   explicit Part(const fs::path& path) : path_(path), record_(read_run_record(path)), programs_(record_.programs()) {
     expect_plain_run(path);
-    lock_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (lock_ < 0 || ::flock(lock_, LOCK_SH | LOCK_NB) != 0) {
-      ::close(lock_);
+    lock_ = Descriptor(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (lock_.fd < 0) throw InputError(fmt::format("{}: cannot be opened: {}", path.string(), std::strerror(errno)));
+    if (!try_lock(lock_.fd, Lock::shared, path))
       throw InputError(fmt::format("{}: a run is writing into it", path.string()));
-    }
   }
-  ~Part() {
-    if (lock_ >= 0) ::close(lock_);
-  }
-  Part(Part&& other) noexcept
-      : path_(std::move(other.path_)),
-        record_(std::move(other.record_)),
-        programs_(std::move(other.programs_)),
-        lock_(std::exchange(other.lock_, -1)) {}
-  Part& operator=(Part&&) = delete;
 
   const fs::path& path() const { return path_; }
   const RunRecord& record() const { return record_; }
@@ -58,7 +50,7 @@ class Part {
   fs::path path_;
   RunRecord record_;
   Json programs_;
-  int lock_ = -1;
+  Descriptor lock_;
 };
 
 [[noreturn]] void refuse(const Part& first, const Part& other, const std::string& what) {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <ctime>
 #include <set>
-#include <thread>
 
+#include <lgabench/core/resources.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/harness/cell_plugins.hpp>
 #include <lgabench/host/confine.hpp>
@@ -22,8 +22,8 @@ Json machine() {
   const Processor processor = this_processor();
   return {{"processor", processor.name},
           {"instructions", processor.instructions},
-          {"cores", std::thread::hardware_concurrency()},
-          {"memory_gib", std::round(machine_bytes() / (1 << 30) * 10) / 10},
+          {"cores", usable_cores()},
+          {"memory_gib", std::round(usable_bytes() / (1 << 30) * 10) / 10},
           {"system", fmt::format("{} {}", system.sysname, system.release)}};
 }
 

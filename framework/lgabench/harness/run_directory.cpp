@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,19 +10,15 @@
 #include <cstring>
 #include <map>
 
+#include <lgabench/core/directories.hpp>
 #include <lgabench/core/environments.hpp>
+#include <lgabench/core/file_lock.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/record/layout.hpp>
 
 namespace lgabench {
 namespace {
-
-void make_directory(const fs::path& path) {
-  std::error_code error;
-  fs::create_directories(path, error);
-  if (error) throw InputError(fmt::format("{}: cannot be made: {}", path.string(), error.message()));
-}
 
 void remove_or_throw(const fs::path& path) {
   std::error_code error;
@@ -131,11 +126,11 @@ RunDirectory::RunDirectory(const fs::path& path, const RunRecord& run, Existing 
   canonical(to_json(run));                                  // what is no UTF-8 is refused before anything is made
   if (existing != Existing::fresh) expect_plain_run(path);  // which removes a link, and never what it leads to
   const bool was_there = has_content(path);
-  make_directory(path);
+  make_directories(path);
   lock_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (lock_ < 0) throw InputError(fmt::format("{}: cannot be opened: {}", path.string(), std::strerror(errno)));
   try {
-    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0)
+    if (!try_lock(lock_, Lock::exclusive, path))
       throw InputError(fmt::format("{}: another run is writing into it", path.string()));
     RunRecord there = run;
     if (was_there) expect_taken_up(path, run, existing);
@@ -156,7 +151,7 @@ RunDirectory::RunDirectory(const fs::path& path, const RunRecord& run, Existing 
     for (const char* name : run_directories) remove_temporaries(path / name);
     if (!is_run(path) || (existing == Existing::resume && there.programs() != run.programs()))
       write_run_record(path, run);
-    make_directory(path / "cells");
+    make_directories(path / "cells");
     for (const auto& entry : fs::directory_iterator(path / "cells"))
       if (entry.path().filename().string()[0] == '.') remove_or_throw(entry.path());
   } catch (...) {
@@ -174,7 +169,7 @@ fs::path RunDirectory::hidden(const std::string& key, const char* what) const {
 fs::path RunDirectory::scratch(const std::string& key) const {
   const fs::path directory = hidden(key, "");
   remove_or_throw(directory);
-  make_directory(directory);
+  make_directories(directory);
   return directory;
 }
 

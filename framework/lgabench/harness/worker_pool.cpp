@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/signalfd.h>
 #include <sys/wait.h>
@@ -11,16 +10,18 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
 #include <list>
+#include <optional>
 #include <sstream>
 #include <utility>
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/process.hpp>
+#include <lgabench/core/refused.hpp>
+#include <lgabench/core/resources.hpp>
 #include <lgabench/host/host_process.hpp>
 
 namespace lgabench {
@@ -28,20 +29,25 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-[[noreturn]] void fail(const std::string& what) { throw InputError(fmt::format("{}: {}", what, std::strerror(errno))); }
+bool is_ignored(int signal) {
+  struct sigaction now {};
+  return ::sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
+}
 
-// SIGCHLD and the signals that end a run arrive in poll(); the mask is put back at the end. Once one of them came, more
-// of them are ignored: who presses Ctrl-C twice still gets the orderly end.
+// SIGCHLD and the signals that end a run arrive in poll(); the mask is put back at the end. One that was ignored when
+// lgabench began stays so (nohup). Once one of them came, more of them are ignored: who presses Ctrl-C twice still gets
+// the orderly end.
 class Signals {
  public:
   Signals() {
     sigset_t wanted;
     sigemptyset(&wanted);
     sigaddset(&wanted, SIGCHLD);
-    for (const int signal : enders) sigaddset(&wanted, signal);
+    for (const int signal : enders)
+      if (!is_ignored(signal)) sigaddset(&wanted, signal);
     ::sigprocmask(SIG_BLOCK, &wanted, &before_);
     fd_ = ::signalfd(-1, &wanted, SFD_CLOEXEC | SFD_NONBLOCK);
-    if (fd_ < 0) fail("signalfd");
+    if (fd_ < 0) throw Refused("signalfd");
   }
   ~Signals() {
     ::close(fd_);
@@ -77,21 +83,6 @@ struct Worker {
   WorkerEnd end;
 };
 
-// The job in memory: a file that needs no writing to disk and no pump.
-Descriptor job_file(const Json& job) {
-  const std::string text = canonical(job);
-  Descriptor file(::memfd_create("job", MFD_CLOEXEC));
-  if (file.fd < 0) fail("memfd_create");
-  std::size_t done = 0;
-  while (done < text.size()) {
-    const ssize_t n = ::write(file.fd, text.data() + done, text.size() - done);
-    if (n < 0) fail("job");
-    done += static_cast<std::size_t>(n);
-  }
-  ::lseek(file.fd, 0, SEEK_SET);
-  return file;
-}
-
 std::string worker_program() { return (program_directory() / "lgabench-worker").string(); }
 
 // One thread of numerics a worker, wherever LibTorch or BLAS look for it: workers, not threads, fill the cores.
@@ -108,12 +99,12 @@ std::vector<std::string> worker_environment(const Json& job) {
 }
 
 Worker start(std::size_t task, const WorkerTask& what, const PoolOptions& options, const Signals& signals) {
-  const Descriptor job = job_file(what.job);
+  const Descriptor job = file_in_memory(canonical(what.job));
   const Descriptor log(
       ::open(what.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_NOFOLLOW | O_CLOEXEC, 0644));
-  if (log.fd < 0) fail(what.log.string() + ": cannot be written");
+  if (log.fd < 0) throw Refused(what.log.string() + ": cannot be written");
   int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) fail("pipe");
+  if (::pipe2(ends, O_CLOEXEC) != 0) throw Refused("pipe");
   Descriptor reading(ends[0]);
   const Descriptor writing(ends[1]);
   ::fcntl(reading.fd, F_SETFL, O_NONBLOCK);
@@ -139,6 +130,7 @@ bool in_line(const Worker& worker) { return worker.end.phase == in_line_phase; }
 void take_line(const std::string& line, Worker& worker, const PoolEvents& events) {
   const Json message = json_or_null(line);
   if (auto complaint = read_complaint(message)) worker.end.complaint = std::move(complaint);
+  if (auto waiting = read_waiting(message)) worker.end.waits_for = std::move(waiting->whom);
   const auto at = read_phase_count(message);
   if (!at) return;
   const bool waited = in_line(worker), waits = at->phase == in_line_phase;
@@ -218,14 +210,20 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
   const Signals signals;
   Crew crew;
   Clock::time_point awake = Clock::now();
+  std::optional<WorkerTask> made;  // of the next task
   for (std::size_t next = 0; next < tasks || !crew.workers.empty();) {
     while (next < tasks && crew.workers.size() < static_cast<std::size_t>(options.jobs)) {
       WorkerEnd not_begun;
       try {
-        crew.workers.push_back(start(next, make(next), options, signals));
-      } catch (const std::exception& e) {  // no process, or no place on the disk
+        if (!made) made = make(next);
+        crew.workers.push_back(start(next, *made, options, signals));
+      } catch (const Refused& e) {
+        if (e.may_pass() && !crew.workers.empty()) break;  // again when one of them has ended
+        not_begun.complaint = Complaint{e.what()};
+      } catch (const std::exception& e) {  // no place on the disk
         not_begun.complaint = Complaint{e.what()};
       }
+      made.reset();
       events.started(next);
       if (not_begun.complaint) events.ended(next, not_begun);
       ++next;
@@ -260,7 +258,7 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
 }
 
 int run_in_foreground(const Json& job) {
-  const Descriptor file = job_file(job);
+  const Descriptor file = file_in_memory(canonical(job));
   ::signal(SIGINT, SIG_IGN);
   const int status = wait_for(start_process(
       {{worker_program(), "cell"}, worker_environment(job), {{file.fd, 0}, {STDIN_FILENO, persons_input}}}));
@@ -268,21 +266,18 @@ int run_in_foreground(const Json& job) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-double machine_bytes() {
-  return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE));
-}
-
-// A worker that leaks meets its own limit before the machine's.
+// A worker that leaks meets its own limit before the job's.
 Limits worker_limits(const PoolOptions& options) {
   constexpr double gib = 1 << 30, least = 4 * gib;
-  const double memory =
-      options.memory_gib > 0 ? options.memory_gib * gib : std::max(least, machine_bytes() / options.jobs);
+  const double share = std::max(usable_bytes() / options.jobs, std::min(least, usable_bytes()));
+  const double memory = options.memory_gib > 0 ? options.memory_gib * gib : share;
   return {static_cast<long long>(options.timeout_s) + 60, static_cast<long long>(memory)};
 }
 
 WorkerFault why_it_ended(const WorkerEnd& end, double timeout_s) {
   const std::string where = end.phase.empty() ? "before its first phase" : "in phase " + end.phase;
-  if (end.timed_out) return {fmt::format("stopped after {} s {}", timeout_s, where), "plugin"};
+  const std::string awaited = end.waits_for.empty() ? "" : fmt::format(": {} did not answer", end.waits_for);
+  if (end.timed_out) return {fmt::format("stopped after {} s {}{}", timeout_s, where, awaited), "plugin"};
   if (end.signal != 0) {
     const bool outside = end.signal == SIGKILL || end.signal == SIGTERM;  // a person, or memory ran out
     return {fmt::format("signal {} ({}) {}", end.signal, ::strsignal(end.signal), where), outside ? "host" : "plugin"};

@@ -24,6 +24,7 @@ struct WorkerEnd {
   int signal = 0;          // that ended it, or 0
   bool timed_out = false;  // it was stopped after the limit
   std::string phase;       // the last one it reported
+  std::string waits_for;   // the plugin's process whose answer it awaited in the end, or ""
   std::optional<Complaint> complaint{};
 };
 
@@ -31,7 +32,7 @@ struct PoolOptions {
   int jobs = 1;
   double timeout_s = 3600;  // of wall time, for one task; time in which this process was stopped, or the worker
                             // waited for others' questions (in_line_phase), does not count
-  double memory_gib = 0;    // of data, for one task; 0: its share of the machine's, 4 at least
+  double memory_gib = 0;    // of data, for one task; 0: its share of usable_bytes(), 4 at least where the job has them
 };
 
 /// Called in the calling thread. `task` indexes the tasks.
@@ -46,7 +47,8 @@ struct PoolEvents {
 /// A task's end, good or bad, changes nothing for the others. `make` is called just before a task starts.
 /// @returns false if SIGINT, SIGTERM or SIGHUP came: all workers are then stopped and gone, and more of these signals
 /// are ignored from there on.
-/// A task that cannot be started has ended with that complaint. Uses the process's signal mask and children; one call
+/// A task that cannot be started waits for another to end where the system lacks processes, descriptors or memory; else
+/// it has ended with that complaint. Uses the process's signal mask and children; one call
 /// at a time.
 bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>& make, const PoolOptions& options,
                  const PoolEvents& events);
@@ -54,9 +56,6 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
 /// Runs the cell of `job` on our own streams: what is typed is for the method's process alone (persons_input), an
 /// interrupt too. Returns the worker's exit status.
 int run_in_foreground(const Json& job);
-
-/// Size of this machine's memory.
-double machine_bytes();
 
 /// What each of the workers may take.
 Limits worker_limits(const PoolOptions& options);

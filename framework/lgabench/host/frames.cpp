@@ -57,8 +57,7 @@ void Channel::expect_owner() const {
   if (::getpid() != owner_) ::_exit(1);
 }
 
-void Channel::send(const Json& header, const std::string& payload, const Descriptor* file) {
-  expect_owner();
+std::string frame_bytes(const Json& header, const std::string& payload) {
   const std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (text.size() > most_header_bytes || payload.size() > most_payload_bytes)
     throw MethodError(fmt::format("a frame \"{}\" with a header of {} and a payload of {} bytes is over the limits",
@@ -69,7 +68,12 @@ void Channel::send(const Json& header, const std::string& payload, const Descrip
   std::memcpy(bytes.data(), &prefix, sizeof prefix);
   bytes += text;
   bytes += payload;
+  return bytes;
+}
 
+void Channel::send(const Json& header, const std::string& payload, const Descriptor* file) {
+  expect_owner();
+  std::string bytes = frame_bytes(header, payload);
   for (std::size_t done = 0; done < bytes.size();) {
     iovec part{bytes.data() + done, bytes.size() - done};
     msghdr message{};

@@ -32,6 +32,9 @@ struct Frame {
   std::string type() const;
 };
 
+/// A frame as it goes over the socket. @throws MethodError for one over the limits.
+std::string frame_bytes(const Json& header, const std::string& payload = {});
+
 /// One end of the socket. A process that its owner forked ends where it sends or receives: only the first one speaks.
 class Channel {
  public:

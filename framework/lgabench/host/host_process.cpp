@@ -25,8 +25,10 @@
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/process.hpp>
+#include <lgabench/core/refused.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/tree.hpp>
+#include <lgabench/host/last_words.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench {
@@ -43,7 +45,7 @@ std::vector<pid_t> children_of(pid_t parent) {
 
 namespace {
 
-[[noreturn]] void fail(const char* what) { throw EngineError(fmt::format("{}: {}", what, std::strerror(errno))); }
+[[noreturn]] void fail(const char* what) { throw EngineError(refused_text(what)); }
 
 // Everything else of our environment stays here: secrets, and where a run lies. A user's name: the list of them cannot
 // be read, and PyTorch names its cache by it. Huge pages: a page of its own for every 4 KiB of demonstrations takes
@@ -144,7 +146,7 @@ HostProcess::HostProcess(const HostCommand& command)
   const Descriptor printing(output[1]);
   ::fcntl(output_.fd, F_SETFL, O_NONBLOCK);
   const Descriptor nothing(::open("/dev/null", O_RDONLY | O_CLOEXEC));
-  ProcessStart start{command.words, environment_of(command), {{theirs.fd, 3}}, command.scratch};
+  ProcessStart start{command.words, environment_of(command), {{theirs.fd, plugin_socket}}, command.scratch};
   if (in_foreground_)
     start.descriptors.emplace_back(persons_input, 0);
   else
@@ -254,7 +256,7 @@ void HostProcess::stop() {
     for (const pid_t pid : left) ::waitpid(pid, nullptr, 0);
 }
 
-void HostProcess::explain() {
+void HostProcess::explain(const std::string& last_words) {
   // A process that closed its connection may not be at its end yet: it has two seconds.
   siginfo_t ended{};
   for (int i = 0; i < 400 && ended.si_pid == 0; ++i) {
@@ -264,9 +266,17 @@ void HostProcess::explain() {
   const bool by_itself = ended.si_pid != 0;
   stop();
   pass_on_output();
-  if (!by_itself) throw MethodGone("its process closed the connection", 0);
-  if (ended.si_code == CLD_EXITED) throw MethodGone(fmt::format("exited with {}", ended.si_status), 0);
-  throw MethodGone(fmt::format("signal {} ({})", ended.si_status, ::strsignal(ended.si_status)), ended.si_status);
+  const bool exited = ended.si_code == CLD_EXITED;
+  if (!by_itself || (exited && ended.si_status == connection_lost && last_words.empty()))
+    throw MethodGone(
+        fmt::format("closed descriptor {}, or put another file there: lgabench talks with it there,", plugin_socket),
+        0);
+  const std::string words = !last_words.empty() ? last_words + ": "
+                            : exited            ? "its process ended in the middle of a call: "
+                                                : "";
+  if (exited) throw MethodGone(fmt::format("{}exited with {}", words, ended.si_status), 0);
+  throw MethodGone(fmt::format("{}signal {} ({})", words, ended.si_status, ::strsignal(ended.si_status)),
+                   ended.si_status);
 }
 
 }  // namespace lgabench

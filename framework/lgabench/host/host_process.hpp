@@ -49,8 +49,9 @@ class HostProcess {
   const std::vector<std::string>& refused_calls() const { return calls_.refused(); }
   /// Processes that it started, directly or not, and that are still there: "NUMBER NAME" each.
   std::vector<std::string> started() const;
-  /// Call it when the connection has ended. @throws MethodGone that says how the process ended, always.
-  [[noreturn]] void explain();
+  /// Call it when the connection has ended. `last_words`: what the process said of its end, or "". @throws MethodGone
+  /// that says how the process ended, always.
+  [[noreturn]] void explain(const std::string& last_words);
 
  private:
   void attend(int fd, short events, int milliseconds);

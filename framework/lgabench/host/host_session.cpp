@@ -81,39 +81,80 @@ Reach reach_of(const HostJob& job) {
   return reach;
 }
 
-[[noreturn]] void raise(const JsonReader& error) {
-  constexpr std::size_t longest = 2000;
-  const auto [kind, reason] = protocol::read_or_malformed(
-      [&] { return std::pair(error.at("kind").string(), error.at("reason").string().substr(0, longest)); });
-  if (kind == "memory") throw std::bad_alloc();
-  if (kind == "plugin") throw PluginError(reason);
-  throw MethodError(reason);
+constexpr std::size_t longest = 2000;  // of what a plugin's process says of itself
+
+std::function<void(const std::string&)>& teller() {
+  static std::function<void(const std::string&)> tell = [](const std::string&) {};
+  return tell;
 }
 
 }  // namespace
 
+void tell_who_is_awaited(std::function<void(const std::string& whom)> tell) { teller() = std::move(tell); }
+
 HostSession::HostSession(const HostJob& job)
-    : layout_(layout_of(job)),
+    : whom_(fmt::format("plugin {} ({})", job.plugin.id, job.plugin.kind)),
+      layout_(layout_of(job)),
       confinement_(job.confined ? std::make_unique<Confinement>(reach_of(job)) : nullptr),
       process_(command_of(job, confinement_.get())),
-      channel_(process_.take_socket(), [this](short events) { process_.wait(channel_.socket(), events); }),
+      channel_(process_.take_socket(), [this](short events) { wait(events); }),
       observation_(protocol::observation_bytes(layout_.picture)) {
   const Frame answer = call(hello_of(job, layout_), "hello", {}, &observation_.file());
   read([&] { return JsonReader(answer.header, "hello").at("protocol").integer(protocol_version, protocol_version); });
 }
 
+void HostSession::await_begins() { asked_ = Clock::now(); }
+
+void HostSession::await_ends() {
+  if (std::exchange(is_told_, false)) teller()("");
+}
+
+void HostSession::wait(short events) {
+  try {
+    process_.wait(channel_.socket(), events);
+  } catch (const std::bad_alloc&) {  // it was ended
+    broken_ = "ran out of memory";
+    throw PluginOutOfMemory(whom_);
+  }
+  if (is_told_ || Clock::now() - asked_ < std::chrono::milliseconds(500)) return;
+  is_told_ = true;
+  teller()(whom_);
+}
+
+void HostSession::raise(const JsonReader& error) {
+  const auto [kind, reason] = protocol::read_or_malformed(
+      [&] { return std::pair(error.at("kind").string(), error.at("reason").string().substr(0, longest)); });
+  if (kind == "memory") throw PluginOutOfMemory(whom_);
+  if (kind == "plugin") throw PluginError(reason);
+  throw MethodError(reason);
+}
+
 Frame HostSession::call(const Json& request, const char* reply, const Meanwhile& meanwhile, const Descriptor* file) {
   return guarded_by_protocol([&] {
+    struct Awaited {
+      explicit Awaited(HostSession& one) : session(one) { session.await_begins(); }
+      ~Awaited() { session.await_ends(); }
+      Awaited(const Awaited&) = delete;
+      Awaited& operator=(const Awaited&) = delete;
+      HostSession& session;
+    };
+    const Awaited it(*this);
     channel_.send(request, {}, file);
     for (;;) {
       std::optional<Frame> frame = channel_.receive();
-      if (!frame) process_.explain();
+      if (!frame) process_.explain(last_words_);
       if (frame->type() == reply) return std::move(*frame);
+      if (frame->type() == "ends") {
+        last_words_ = read([&] { return JsonReader(frame->header, "ends").at("reason").string().substr(0, longest); });
+        continue;
+      }
       if (frame->type() == "error") raise(JsonReader(frame->header, "error"));
       broken_ = "was left in the middle of a call";  // by what the next line may throw
+      await_ends();
       if (!meanwhile || !meanwhile(*frame, channel_))
         throw Malformed(fmt::format("\"{}\", expected \"{}\"", frame->type().substr(0, 40), reply));
       broken_.clear();
+      await_begins();
     }
   });
 }

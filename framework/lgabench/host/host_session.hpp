@@ -1,5 +1,6 @@
 // The worker's end of a conversation with a plugin's process (docs/formats/method-protocol.md).
 #pragma once
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -32,6 +33,10 @@ struct HostJob {
   std::string task{};  // of the environment, whose stations a method is told; "": it is told of none
 };
 
+/// Calls `tell` in all later conversations of this process: with the plugin whose process has not answered for half a
+/// second, and with "" once it did.
+void tell_who_is_awaited(std::function<void(const std::string& whom)> tell);
+
 /// The connection, from the process's start to its end. Once the process ended, was stopped or broke the protocol,
 /// every call throws MethodGone.
 class HostSession {
@@ -41,8 +46,11 @@ class HostSession {
 
   using Meanwhile = std::function<bool(const Frame& frame, Channel& channel)>;
 
+  /// Whether nothing can be asked any more.
+  bool is_broken() const { return !broken_.empty(); }
+
   /// Sends the request and returns the reply of that type. `meanwhile` takes the frames that come before it; one that
-  /// it does not know breaks the protocol. @throws MethodError, std::bad_alloc, PluginError as the reply says.
+  /// it does not know breaks the protocol. @throws MethodError, PluginOutOfMemory, PluginError as the reply says.
   Frame call(const Json& request, const char* reply, const Meanwhile& meanwhile = {}, const Descriptor* file = nullptr);
 
   /// Returns what a reply holds. @throws MethodGone
@@ -69,12 +77,23 @@ class HostSession {
       broken_ = e.what();
       throw;
     } catch (const Malformed& e) {
-      broken_ = std::string("sent a malformed frame: ") + e.what();
+      broken_ = std::string("sent a malformed frame (does it write to descriptor 3, where lgabench talks with it?): ") +
+                e.what();
       throw MethodGone(broken_, 0);
     }
   }
 
+  void wait(short events);
+  void raise(const JsonReader& error);
+  void await_begins();
+  void await_ends();
+
+  using Clock = std::chrono::steady_clock;
+  const std::string whom_;  // "plugin ID (KIND)"
   const protocol::Layout layout_;
+  Clock::time_point asked_{};
+  bool is_told_ = false;    // that this one is awaited
+  std::string last_words_;  // of what ends its process
   std::unique_ptr<Confinement> confinement_;
   HostProcess process_;
   Channel channel_;

@@ -52,6 +52,8 @@ class HostedMethod : public MethodInProcesses {
   void drop_policy();
   /// Likewise: what the process of a plugin holds beyond what it held before the plugin was loaded.
   ProcessState state() const;
+  /// Likewise: whether its process can be asked nothing any more.
+  bool is_broken() const { return session_->is_broken(); }
   /// Likewise, of any plugin: processes that it started and that are still there, "NUMBER NAME" each.
   std::vector<std::string> processes() const;
 

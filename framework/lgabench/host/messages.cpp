@@ -53,6 +53,7 @@ static void fields(ProcessState& state, Fields& field) {
   field("descriptors", state.descriptors);
   field("heap_bytes", state.heap_bytes, within(0, 1LL << 60));
   field("flushed", state.flushed);
+  field("rounds", state.rounds);
 }
 
 }  // namespace lgabench

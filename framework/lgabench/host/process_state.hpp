@@ -10,8 +10,9 @@ struct ProcessState {
   std::vector<std::string> threads, descriptors;  // sorted
   long long heap_bytes = 0;
   bool flushed = true;  // subnormal numbers, after every call so far
+  bool rounds = true;   // to nearest, likewise
 
-  /// State of this process; `flushed` is left to whoever made the calls.
+  /// State of this process; `flushed` and `rounds` are left to whoever made the calls.
   static ProcessState now();
   /// This without the threads and descriptors of `before`.
   ProcessState beyond(const ProcessState& before) const;

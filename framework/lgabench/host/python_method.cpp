@@ -15,6 +15,7 @@
 #include <lgabench/core/descriptor.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/process.hpp>
+#include <lgabench/core/refused.hpp>
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/host/installed_methods.hpp>
 #include <lgabench/host/reach.hpp>
@@ -58,6 +59,18 @@ bool confine(const Confinement& confinement) {
          confinement.apply();
 }
 
+// Why an interpreter did not start, or lgabench's package in it, and what to do.
+std::string not_started_text(const std::string& interpreter, const std::string& why) {
+  std::error_code no_link;
+  const fs::path leads = fs::read_symlink(interpreter, no_link);
+  if (interpreter.find('/') != interpreter.npos && !no_link && !fs::exists(interpreter))
+    return fmt::format(
+        "{}: a link to {}, which does not exist: make the virtual environment again, or name another "
+        "interpreter with --python",
+        interpreter, leads.string());
+  return fmt::format("{}; --python names the interpreter", why);
+}
+
 // What the interpreter prints, without a shell, started in an empty directory; confined where the method's file is
 // read.
 Output output_of(const std::string& interpreter, const std::string& word, const Confinement* confinement) {
@@ -71,12 +84,16 @@ Output output_of(const std::string& interpreter, const std::string& word, const 
     return Descriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600));
   };
   const Descriptor to_out = made(out), to_error = made(error);
-  const pid_t pid =
-      start_process({{is_path ? fs::absolute(interpreter).string() : interpreter, "-c", start, package, word},
-                     describing_environment(),
-                     {{to_out.fd, 1}, {to_error.fd, 2}},
-                     empty,
-                     [confinement] { return !confinement || confine(*confinement); }});
+  pid_t pid = -1;
+  try {
+    pid = start_process({{is_path ? fs::absolute(interpreter).string() : interpreter, "-c", start, package, word},
+                         describing_environment(),
+                         {{to_out.fd, 1}, {to_error.fd, 2}},
+                         empty,
+                         [confinement] { return !confinement || confine(*confinement); }});
+  } catch (const Refused& e) {
+    throw PluginError(not_started_text(interpreter, e.what()));
+  }
   const int status = wait_for(pid);
   return {read_file(out), read_file(error), status};
 }
@@ -87,22 +104,9 @@ std::string last_line(std::string text) {
   return text.substr(text.rfind('\n') + 1);
 }
 
-// Why an interpreter did not start, or lgabench's package in it, and what to do.
-std::string not_started_text(const std::string& interpreter) {
-  std::error_code no_link;
-  const fs::path leads = fs::read_symlink(interpreter, no_link);
-  if (interpreter.find('/') != interpreter.npos && !no_link && !fs::exists(interpreter))
-    return fmt::format(
-        "{}: a link to {}, which does not exist: make the virtual environment again, or name another "
-        "interpreter with --python",
-        interpreter, leads.string());
-  return fmt::format("{}: cannot be started; --python names the interpreter", interpreter);
-}
-
 // What it printed. @throws PluginError with its last words where it failed.
 std::string answer_of(const std::string& interpreter, const std::string& word, const Confinement* confinement) {
   const auto [out, error, status] = output_of(interpreter, word, confinement);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == not_started) throw PluginError(not_started_text(interpreter));
   if (status != 0 && error.find("No module named 'numpy'") != error.npos)
     throw PluginError(fmt::format(
         "{0}: has no NumPy, which methods in Python need: {0} -m pip install numpy, or name an interpreter that has it "

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include <lgabench/host/last_words.hpp>
 #include <lgabench/host/messages.hpp>
 #include <lgabench/host/serving.hpp>
 #include <lgabench/plugin/loader.hpp>
@@ -23,7 +24,7 @@ namespace {
 Frame ask(Channel& channel, const Json& question, const char* expected) {
   channel.send(question);
   std::optional<Frame> frame = channel.receive();
-  if (!frame) ::_exit(1);  // the worker is gone
+  if (!frame) ::_exit(connection_lost);
   if (frame->type() == "refused") throw MethodError(JsonReader(frame->header, "refused").at("reason").string());
   if (frame->type() != expected) throw MethodError(fmt::format("\"{}\", expected \"{}\"", frame->type(), expected));
   return std::move(*frame);
@@ -300,7 +301,7 @@ class Host {
     }
     if (frame.type() == "state") {
       ProcessState state = ProcessState::now().beyond(before_);
-      state.flushed = flushed_;
+      arithmetic_.tell(state);
       Json reply = protocol::to_json(state);
       reply["type"] = "state";
       return {reply};
@@ -317,12 +318,8 @@ class Host {
   // What the processor's control register said before is put back.
   template <class Call>
   auto call(Call&& c) -> decltype(c()) {
-    struct NotesFirst {
-      ~NotesFirst() { flushed = flushed && denormals_flushed(); }
-      bool& flushed;
-    };
     const FlushDenormalsAgain on_every_way_out;
-    const NotesFirst how_it_was{flushed_};
+    const NotesArithmetic how_it_was(arithmetic_);
     return c();
   }
 
@@ -334,7 +331,7 @@ class Host {
   protocol::SharedMemory memory_;
   Observation observation_;                              // the last one
   const ProcessState before_ = ProcessState::now();      // the plugin came
-  bool flushed_ = true;                                  // subnormal numbers, at the end of every call
+  Arithmetic arithmetic_;                                // at the end of every call
   const fs::path files_ = fs::current_path() / "files";  // wherever the plugin goes
   Json options_;
   std::uint64_t seed_ = 0;
@@ -356,18 +353,22 @@ PluginInfo named_plugin(const Frame& hello, const char* kind) {
   return plugin;
 }
 
-void serve(Channel& channel) {
+bool serve(Channel& channel) {
   std::optional<Frame> hello = channel.receive();
-  if (!hello) return;
+  if (!hello) return false;
   if (hello->header.contains("perturbation") || hello->header.contains("perceiver"))
     return serve_perturbation(channel, std::move(*hello));
   std::optional<Host> host;
-  if (!told(channel, [&] { host.emplace(channel, *hello); })) return;
+  if (!told(channel, [&] { host.emplace(channel, *hello); })) return true;
   hello.reset();  // its file is mapped by now
   while (const std::optional<Frame> frame = channel.receive()) {
-    if (frame->type() == "bye") return host->end();
+    if (frame->type() == "bye") {
+      host->end();
+      return true;
+    }
     told(channel, [&] { host->answer(*frame); });
   }
+  return false;
 }
 
 }  // namespace lgabench

@@ -4,8 +4,9 @@
 
 namespace lgabench {
 
-/// Loads the plugin that the first frame names and answers until "bye", or until the worker is gone. What the plugin
-/// throws is told to the worker. One thread. @throws MethodError for a frame that no worker sends.
-void serve(Channel& channel);
+/// Loads the plugin that the first frame names and answers until "bye": true; or until there is no connection any more:
+/// false. What the plugin throws is told to the worker. One thread. @throws MethodError for a frame that no worker
+/// sends.
+bool serve(Channel& channel);
 
 }  // namespace lgabench

@@ -42,7 +42,7 @@ class PerturbationHost {
     if (frame.type() != "state")
       throw MethodError(fmt::format("unexpected frame from the worker: \"{}\"", frame.type()));
     ProcessState state = ProcessState::now().beyond(before_);
-    state.flushed = flushed_;
+    arithmetic_.tell(state);
     Json reply = protocol::to_json(state);
     reply["type"] = "state";
     channel_.send(reply);
@@ -60,10 +60,13 @@ class PerturbationHost {
     Observation seen;
     protocol::read_observation(memory_, picture_, reader.at("instances"), false, seen);
     load();  // check-plugin may have had the first destroyed
-    const FlushDenormalsAgain on_every_way_out;
-    const Observation perceived = perceiver_ ? perceiver_->read(std::move(seen), space_of(reader.at("space")))
-                                             : perturbed(std::move(seen), reader);
-    flushed_ = flushed_ && denormals_flushed();
+    const auto call = [&] {
+      const FlushDenormalsAgain on_every_way_out;
+      const NotesArithmetic how_it_was(arithmetic_);
+      return perceiver_ ? perceiver_->read(std::move(seen), space_of(reader.at("space")))
+                        : perturbed(std::move(seen), reader);
+    };
+    const Observation perceived = call();
     expect_size(perceived, picture_, perceiver_ ? "read" : "perceive");
     for (const Frame& frame : {protocol::ids_frame(perceived), protocol::perceived_frame(perceived)})
       channel_.send(frame.header, frame.payload);
@@ -93,7 +96,7 @@ class PerturbationHost {
   const PictureSize picture_;
   const protocol::SharedMemory memory_;
   const ProcessState before_ = ProcessState::now();  // the plugin came
-  bool flushed_ = true;                              // subnormal numbers, at the end of every call
+  Arithmetic arithmetic_;                            // at the end of every call
   PluginInfo plugin_;
   std::unique_ptr<ObservationPerturbation> perturbation_;
   std::unique_ptr<Perceiver> perceiver_;
@@ -101,14 +104,18 @@ class PerturbationHost {
 
 }  // namespace
 
-void serve_perturbation(Channel& channel, Frame hello) {
+bool serve_perturbation(Channel& channel, Frame hello) {
   std::optional<PerturbationHost> host;
-  if (!told(channel, [&] { host.emplace(channel, hello); })) return;
+  if (!told(channel, [&] { host.emplace(channel, hello); })) return true;
   hello = {};  // its file is mapped by now
   while (const std::optional<Frame> frame = channel.receive()) {
-    if (frame->type() == "bye") return host->end();
+    if (frame->type() == "bye") {
+      host->end();
+      return true;
+    }
     told(channel, [&] { host->answer(*frame); });
   }
+  return false;
 }
 
 }  // namespace lgabench

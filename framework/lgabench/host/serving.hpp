@@ -1,8 +1,10 @@
 // Inside host/: what the hosts of methods and of perturbations share.
 #pragma once
+#include <cfenv>
 #include <new>
 
 #include <lgabench/host/frames.hpp>
+#include <lgabench/host/process_state.hpp>
 #include <lgabench/plugin/guarded.hpp>
 #include <lgabench/plugin/loader.hpp>
 
@@ -27,10 +29,36 @@ bool told(Channel& channel, Call&& call) {
   return false;
 }
 
+/// Whether a plugin left the processor's arithmetic as it was.
+struct Arithmetic {
+  bool flushed = true, rounds = true;  // as in ProcessState
+
+  void note() {
+    flushed = flushed && denormals_flushed();
+    rounds = rounds && std::fegetround() == FE_TONEAREST;
+  }
+  void tell(ProcessState& state) const {
+    state.flushed = flushed;
+    state.rounds = rounds;
+  }
+};
+
+/// Notes it at the end of a call, however that is left; before FlushDenormalsAgain, if it is made after it.
+class NotesArithmetic {
+ public:
+  explicit NotesArithmetic(Arithmetic& noted) : noted_(noted) {}
+  ~NotesArithmetic() { noted_.note(); }
+  NotesArithmetic(const NotesArithmetic&) = delete;
+  NotesArithmetic& operator=(const NotesArithmetic&) = delete;
+
+ private:
+  Arithmetic& noted_;
+};
+
 /// The plugin that "hello" names under its kind. @throws PluginError where it is not the one that the worker read.
 PluginInfo named_plugin(const Frame& hello, const char* kind);
 
 /// As serve(), of a perturbation.
-void serve_perturbation(Channel& channel, Frame hello);
+bool serve_perturbation(Channel& channel, Frame hello);
 
 }  // namespace lgabench

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <map>
 
+#include <lgabench/core/refused.hpp>
 #include <lgabench/host/messages.hpp>
 
 #if !defined(F_SEAL_FUTURE_WRITE)
@@ -20,7 +21,7 @@ namespace {
 constexpr std::size_t instance_numbers = 5;
 constexpr std::size_t most_bytes = std::size_t{1} << 36;
 
-[[noreturn]] void fail(const char* what) { throw EngineError(fmt::format("{}: {}", what, std::strerror(errno))); }
+[[noreturn]] void fail(const char* what) { throw EngineError(refused_text(what)); }
 
 // Places arrays one after another, each at a multiple of 64 bytes.
 class Arrays {
@@ -81,6 +82,7 @@ void seal(const Descriptor& file) {
 void write_at(const Descriptor& file, std::size_t offset, const void* data, std::size_t size) {
   for (const auto* bytes = static_cast<const char*>(data); size > 0;) {
     const ssize_t n = ::pwrite(file.fd, bytes, size, static_cast<off_t>(offset));
+    if (n < 0 && errno == EINTR) continue;
     if (n < 0) fail("pwrite");
     bytes += n, offset += static_cast<std::size_t>(n), size -= static_cast<std::size_t>(n);
   }

@@ -9,6 +9,8 @@
 #include <map>
 #include <string>
 
+#include <lgabench/core/refused.hpp>
+
 namespace lgabench::http {
 namespace {
 
@@ -45,7 +47,7 @@ std::uint64_t bytes_received(int connection) {
 }  // namespace
 
 ConnectionLimits::ConnectionLimits(int port, double seconds, std::uint64_t bytes)
-    : port_(port), seconds_(seconds), bytes_(bytes), thread_([this] { watch(); }) {}
+    : port_(port), seconds_(seconds), bytes_(bytes), thread_(start_thread([this] { watch(); })) {}
 
 ConnectionLimits::~ConnectionLimits() {
   {

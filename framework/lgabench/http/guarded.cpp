@@ -4,8 +4,19 @@
 #include <pthread.h>
 #include <sys/mman.h>
 
+#include <cerrno>
+#include <condition_variable>
+#include <cstring>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/error.hpp>
+#include <lgabench/core/refused.hpp>
 #include <lgabench/http/connection_limits.hpp>
 
 namespace lgabench::http {
@@ -14,21 +25,64 @@ namespace {
 using httplib::Request;
 using httplib::Response;
 
-constexpr std::size_t largest_body = 256 << 10, largest_request = 2 * largest_body, threads = 128;
+constexpr std::size_t largest_body = 256 << 10, largest_request = 2 * largest_body, most_threads = 128;
 constexpr std::size_t stack = 16 << 20, kept_stack = 64 << 10;
 constexpr double longest_request_s = 10;
 constexpr const char* json_type = "application/json";
 
 // httplib reads a Range by a regular expression that goes deeper with each character of a header: more than the
 // system's stack may hold, and what one request took each thread would keep.
-httplib::ThreadPool* pool_with_own_stacks() {
+void set_stack_of_threads() {
   pthread_attr_t attributes;
   ::pthread_getattr_default_np(&attributes);
   ::pthread_attr_setstacksize(&attributes, stack);
   ::pthread_setattr_default_np(&attributes);
   ::pthread_attr_destroy(&attributes);
-  return new httplib::ThreadPool(threads);
 }
+
+// As httplib's ThreadPool, which ends the program where the system starts fewer threads.
+class Pool final : public httplib::TaskQueue {
+ public:
+  Pool() {
+    set_stack_of_threads();
+    threads_ = start_helpers(most_threads, [this] { work(); });
+    if (threads_.empty()) throw Refused("no thread can be started that answers requests", EAGAIN);
+  }
+  void enqueue(std::function<void()> task) override {
+    {
+      const std::lock_guard lock(mutex_);
+      tasks_.push_back(std::move(task));
+    }
+    changed_.notify_one();
+  }
+  void shutdown() override {
+    {
+      const std::lock_guard lock(mutex_);
+      ends_ = true;
+    }
+    changed_.notify_all();
+    for (std::thread& thread : threads_) thread.join();
+  }
+
+ private:
+  void work() {
+    for (;;) {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [this] { return ends_ || !tasks_.empty(); });
+      if (tasks_.empty()) return;
+      const std::function<void()> task = std::move(tasks_.front());
+      tasks_.pop_front();
+      lock.unlock();
+      task();
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::function<void()>> tasks_;
+  bool ends_ = false;
+  std::vector<std::thread> threads_;
+};
 
 void give_stack_back() {
   pthread_attr_t attributes;
@@ -58,7 +112,7 @@ void reply(Response& response, int status, const Json& json) {
 }
 
 GuardedServer::GuardedServer(const Listening& where, httplib::Headers headers, Takes takes) : takes_(takes) {
-  pages.new_task_queue = pool_with_own_stacks;
+  pages.new_task_queue = [] { return new Pool; };
   pages.set_payload_max_length(largest_body);
   pages.set_read_timeout(10);
   pages.set_keep_alive_max_count(1);  // so that a connection's deadline is a request's
@@ -70,13 +124,15 @@ GuardedServer::GuardedServer(const Listening& where, httplib::Headers headers, T
     answer_whole(request);  // one that is malformed comes here first
     if (response.body.empty()) response.set_content(fmt::format("{}\n", response.status), "text/plain");
   });
+  errno = 0;
   if (where.port == 0)
     port_ = pages.bind_to_any_port(where.address);
   else
     port_ = pages.bind_to_port(where.address, where.port) ? where.port : -1;
   if (port_ <= 0)
-    throw InputError(
-        fmt::format("{}:{}: cannot listen there: does another program use that port?", where.address, where.port));
+    throw InputError(fmt::format("{}:{}: cannot listen there: {}{}", where.address, where.port,
+                                 errno == 0 ? "no address of this machine" : std::strerror(errno),
+                                 where.port == 0 ? "" : "; take another --port"));
   for (const char* own : {"127.0.0.1", "localhost", "[::1]"}) {
     hosts_.push_back(fmt::format("{}:{}", own, port_));
     if (port_ == 80) hosts_.emplace_back(own);  // a browser leaves HTTP's own port out

@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include <lgabench/core/refused.hpp>
 #include <lgabench/http/guarded.hpp>
 
 namespace lgabench::http {
@@ -59,7 +60,7 @@ void until_stopped(const std::function<void()>& run, const std::function<void()>
   sigemptyset(&signals);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
   ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before any thread of the server
-  std::thread stopper([&signals, &stop] {
+  std::thread stopper = start_thread([&signals, &stop] {
     int which = 0;
     ::sigwait(&signals, &which);
     stop();

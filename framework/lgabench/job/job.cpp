@@ -166,6 +166,8 @@ Json to_json(const Complaint& message) {
           {"refused", message.refused}};
 }
 
+Json to_json(const Waiting& message) { return {{"waits_for", message.whom}}; }
+
 std::optional<PhaseCount> read_phase_count(const Json& line) {
   if (!line.is_object() || !line.contains("phase")) return std::nullopt;
   return PhaseCount{text(line, "phase"), number(line, "count")};
@@ -175,6 +177,11 @@ std::optional<Complaint> read_complaint(const Json& line) {
   if (!line.is_object() || !line.contains("reason")) return std::nullopt;
   return Complaint{text(line, "reason"), text(line, "fault") == "plugin", static_cast<int>(number(line, "signal")),
                    line.value("refused", Json()) == true};
+}
+
+std::optional<Waiting> read_waiting(const Json& line) {
+  if (!line.is_object() || !line.contains("waits_for")) return std::nullopt;
+  return Waiting{text(line, "waits_for")};
 }
 
 }  // namespace lgabench

@@ -141,10 +141,16 @@ struct Complaint {
   int signal = 0;          // that ended the method's process
   bool refused = false;    // a plugin could not be loaded
 };
+/// Whose plugin's process it has waited for, for longer than a call should take; "": for none any more. Likewise.
+struct Waiting {
+  std::string whom;
+};
 Json to_json(const PhaseCount& message);
 Json to_json(const Complaint& message);
+Json to_json(const Waiting& message);
 /// None where the line is something else: a plugin could write there too.
 std::optional<PhaseCount> read_phase_count(const Json& line);
 std::optional<Complaint> read_complaint(const Json& line);
+std::optional<Waiting> read_waiting(const Json& line);
 
 }  // namespace lgabench

@@ -5,37 +5,25 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <memory>
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/process.hpp>
+#include <lgabench/core/refused.hpp>
 
 namespace lgabench {
 namespace {
 
-using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
-
 // Standard output of the worker, given `input`. Returns what went wrong, or "".
 std::string run_worker(const std::string& verb, const std::string& input, std::string& output) {
-  const File in(std::tmpfile(), std::fclose), out(std::tmpfile(), std::fclose);
-  if (!in || !out || std::fwrite(input.data(), 1, input.size(), in.get()) != input.size() || std::fflush(in.get()) != 0)
-    return fmt::format("no temporary file could be written: {}", std::strerror(errno));
-  std::rewind(in.get());
-
+  const Descriptor in = file_in_memory(input), out = file_in_memory();
   const std::string program = (program_directory() / "lgabench-worker").string();
-  const int status =
-      wait_for(start_process({{program, verb},
-                              environment_with({}),
-                              {{::fileno(in.get()), STDIN_FILENO}, {::fileno(out.get()), STDOUT_FILENO}}}));
-  if (WIFEXITED(status) && WEXITSTATUS(status) == not_started) return "lgabench-worker could not be started";
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return "lgabench-worker failed";
-
-  std::rewind(out.get());
-  char buffer[1 << 16];
-  for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, out.get())) > 0;) output.append(buffer, n);
+  const int status = wait_for(
+      start_process({{program, verb}, environment_with({}), {{in.fd, STDIN_FILENO}, {out.fd, STDOUT_FILENO}}}));
+  if (WIFSIGNALED(status))
+    return fmt::format("lgabench-worker was ended by signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
+  if (WEXITSTATUS(status) != 0) return "lgabench-worker failed";
+  output = bytes_of(out);
   return "";
 }
 
@@ -44,7 +32,11 @@ std::string run_worker(const std::string& verb, const std::string& input, std::s
 WorkerAnswers ask_worker(const std::string& verb, const Json& requests) {
   WorkerAnswers answers;
   std::string text;
-  answers.problem = run_worker(verb, canonical(requests), text);
+  try {
+    answers.problem = run_worker(verb, canonical(requests), text);
+  } catch (const Refused& e) {  // without the program's path: reports, which people send on, have this text
+    answers.problem = fmt::format("lgabench-worker could not be started: {}", std::strerror(e.reason));
+  }
   std::size_t begin = 0;
   for (std::size_t i = 0; i < requests.size(); ++i) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());

@@ -14,6 +14,7 @@
 #include <lgabench/core/descriptor.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/process.hpp>
+#include <lgabench/core/refused.hpp>
 
 namespace lgabench::leaderboard {
 namespace {
@@ -25,8 +26,7 @@ class Objects {
  public:
   explicit Objects(const fs::path& tree) {
     int ends[2];
-    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-      throw InputError("cannot make a pair of sockets");
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) throw Refused("socketpair");
     socket_ = ::fdopen(ends[0], "r");
     const Descriptor its{ends[1]}, null{::open("/dev/null", O_WRONLY | O_CLOEXEC)};
     std::vector<std::string> variables = environment_with({"LC_ALL=C"});

@@ -67,8 +67,15 @@
 #define LGABENCH_COMPILER "gcc " __VERSION__
 #endif
 
+// -ffast-math and -Ofast. In sight, not refused: results then depend on compiler and processor.
+#if defined(__FAST_MATH__)
+#define LGABENCH_ARITHMETIC ";arithmetic=fast"
+#else
+#define LGABENCH_ARITHMETIC ""
+#endif
+
 /// "key=value;..." of the translation unit that expands it. The compiler is information: it may differ.
 #define LGABENCH_FINGERPRINT                                                                                           \
   "architecture=" LGABENCH_ARCHITECTURE ";standard library=" LGABENCH_STANDARD_LIBRARY ";string ABI=" LGABENCH_STRINGS \
   ";iterators=" LGABENCH_ITERATORS ";sanitizer=" LGABENCH_SANITIZER ";SDK=" LGABENCH_VERSION                           \
-  ";LibTorch=" LGABENCH_TORCH ";compiler=" LGABENCH_COMPILER
+  ";LibTorch=" LGABENCH_TORCH LGABENCH_ARITHMETIC ";compiler=" LGABENCH_COMPILER

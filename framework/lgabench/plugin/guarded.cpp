@@ -8,6 +8,7 @@
 namespace lgabench {
 
 MethodGone::~MethodGone() = default;
+PluginOutOfMemory::~PluginOutOfMemory() = default;
 
 std::string current_exception_text() {
   const std::type_info* type = abi::__cxa_current_exception_type();

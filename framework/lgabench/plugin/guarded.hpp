@@ -22,6 +22,18 @@ class MethodGone : public Error {
   int signal;
 };
 
+/// A plugin's process needed more memory than it may have.
+class PluginOutOfMemory : public std::bad_alloc {
+ public:
+  /// `whom`: the plugin, as "plugin ID (KIND)".
+  explicit PluginOutOfMemory(const std::string& whom) : what_(whom + ": out of memory (the limit is --memory)") {}
+  ~PluginOutOfMemory() override;
+  const char* what() const noexcept override { return what_.c_str(); }
+
+ private:
+  std::string what_;
+};
+
 /// The exception being handled, as one line: the first of what(), or the name of its type if it has none.
 std::string current_exception_text();
 

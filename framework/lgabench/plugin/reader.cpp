@@ -92,8 +92,13 @@ void check_fingerprint(const std::string& fingerprint) {
     if (key != "compiler" && theirs[key] != our)
       differences.push_back(fmt::format("{} \"{}\" (this program: \"{}\")", key, theirs[key], our));
   if (differences.empty()) return;
-  const char* what_to_do =
-      theirs["SDK"] == ours["SDK"] ? "" : ": build it again with this lgabench's package (docs/from-0.3-to-0.4.md)";
+  const auto same = [&](const char* key) { return theirs[key] == ours[key]; };
+  const char* what_to_do = !same("SDK") ? ": build it again with this lgabench's package (docs/from-0.3-to-0.4.md)"
+                           : !same("string ABI")
+                               ? ": build it without -D_GLIBCXX_USE_CXX11_ABI=0, which older builds of LibTorch add"
+                           : !same("iterators") ? ": build it without -D_GLIBCXX_DEBUG"
+                           : !same("sanitizer") ? ": build it without -fsanitize, or lgabench with the same"
+                                                : "";
   throw PluginError(fmt::format("built with {}{}", fmt::join(differences, ", "), what_to_do));
 }
 

@@ -3,12 +3,13 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <map>
 
+#include <lgabench/core/descriptor.hpp>
+#include <lgabench/core/file_lock.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/record/cell_status.hpp>
 #include <lgabench/record/layout.hpp>
@@ -116,10 +117,8 @@ Document index_document(const std::vector<Report>& reports, const fs::path& plac
 }
 
 bool is_being_written(const fs::path& run) {
-  const int directory = ::open(run.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool locked = directory >= 0 && ::flock(directory, LOCK_SH | LOCK_NB) != 0;
-  if (directory >= 0) ::close(directory);
-  return locked;
+  const Descriptor directory(::open(run.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  return directory.fd >= 0 && is_locked(directory.fd);
 }
 
 Progressed progress_of(const fs::path& run, const std::string& name) {

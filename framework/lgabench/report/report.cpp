@@ -25,8 +25,9 @@ Report write_report(const fs::path& run) {
   Report report;
   report.run = read_cells(run);
   report.agreements = engine_agreement(report.run);
-  auto drawing =  // by another process
-      std::async(std::launch::async, [&] { return draw_pictures(run, report.run, report.agreements); });
+  auto drawing =                                              // by another process
+      std::async(std::launch::async | std::launch::deferred,  // here, where no thread can be started
+                 [&] { return draw_pictures(run, report.run, report.agreements); });
   report.summary = summarize(report.run);
   report.claims = test_claims(report.run);
   const Summary& summary = report.summary;

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +10,8 @@
 #include <cstring>
 #include <set>
 
+#include <lgabench/core/directories.hpp>
+#include <lgabench/core/file_lock.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/record/layout.hpp>
@@ -71,18 +72,14 @@ Json assigned(const Session& session) {
 
 Study::Study(fs::path directory, Protocol protocol, const fs::path& protocol_file, Kind kind)
     : directory_(std::move(directory)), protocol_(std::move(protocol)), kind_(kind) {
-  fs::create_directories(people_of(directory_));
+  make_directories(people_of(directory_));
   fs::permissions(directory_, fs::perms::owner_all);
   const fs::path lock = directory_ / "study.lock";
   lock_ = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-  if (lock_ < 0 || ::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
-    const int reason = errno;
-    if (lock_ >= 0) ::close(lock_);
-    throw InputError(reason == EWOULDBLOCK
-                         ? fmt::format("{}: another lgabench serves this study", directory_.string())
-                         : fmt::format("{}: cannot be locked: {}", lock.string(), std::strerror(reason)));
-  }
+  if (lock_ < 0) throw InputError(fmt::format("{}: cannot be opened: {}", lock.string(), std::strerror(errno)));
   try {
+    if (!try_lock(lock_, Lock::exclusive, lock))
+      throw InputError(fmt::format("{}: another lgabench serves this study", directory_.string()));
     open_log(protocol_file);
     open_people();
   } catch (...) {

@@ -28,6 +28,8 @@
 #include <lgabench/core/flush_denormals.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/json.hpp>
+#include <lgabench/core/refused.hpp>
+#include <lgabench/core/resources.hpp>
 #include <lgabench/core/scenario_files.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/plugin/loader.hpp>
@@ -359,8 +361,7 @@ class Pool {
           errors[row] = std::current_exception();
         }
     };
-    std::vector<std::thread> helpers;
-    for (int i = 1; i < threads_; ++i) helpers.emplace_back(run);
+    std::vector<std::thread> helpers = start_helpers(size(threads_) - 1, run);
     run();
     for (std::thread& helper : helpers) helper.join();
     for (const std::exception_ptr& error : errors)
@@ -444,6 +445,7 @@ NB_MODULE(_core, m) {
       .def("expert_action", &One::expert_action, "instance"_a.none())
       .def_prop_ro("scene_hash", &One::scene_hash)
       .def_prop_ro("utterance", &One::utterance);
+  m.def("usable_cores", &usable_cores);
   nb::class_<Pool>(m, "Pool")
       .def(nb::init<const std::shared_ptr<const Scenario>&, const std::string&, const std::string&, int, int>(),
            "scenario"_a, "engine"_a, "layout"_a, "count"_a, "threads"_a)

@@ -17,7 +17,7 @@ import tempfile
 import warnings
 from typing import Any, Callable, Iterable, Iterator, Mapping, Sequence
 
-from lgabench.__main__ import PROGRAM
+from lgabench.__main__ import PROGRAM, ending
 
 FORMS = ("flat", "structured")  # yes or no of each feature; what the command means
 METRICS = ("scenes_exact", "exact_sets", "precision", "recall", "answered")
@@ -37,7 +37,7 @@ def _call(*words: object, also: int = 0) -> str:
     """What the program prints. ValueError for an exit status other than 0 and `also`."""
     done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True)
     if done.returncode not in (0, also):
-        raise ValueError("; ".join(done.stderr.strip().splitlines()[-3:]))
+        raise ValueError("; ".join(done.stderr.strip().splitlines()[-3:]) or f"lgabench {words[0]}: {ending(done.returncode)}")
     return done.stdout
 
 

@@ -12,6 +12,7 @@ from typing import Any, Optional, Sequence, Union
 import numpy
 import numpy.typing
 
+from lgabench.__main__ import ending
 from lgabench_method import Observation, Selection, installed
 from lgabench_method import values as _values
 
@@ -55,10 +56,11 @@ class Policy:
             line = self._process.stdout.readline()
         except BrokenPipeError:
             line = b""
-        answer: dict[str, Any] = json.loads(line) if line else {"fatal": "the policy's process ended"}
+        answer: dict[str, Any] = json.loads(line) if line else {"fatal": ""}
         if "fatal" in answer:
+            process = self._process
             self.close()
-            raise RuntimeError(answer["fatal"])
+            raise RuntimeError(answer["fatal"] or f"the policy's process ended: {ending(process.returncode)}")
         if "error" in answer:
             raise ValueError(answer["error"])
         return answer

@@ -219,15 +219,14 @@ class Batch(NamedTuple):
 
 
 class Pool:
-    """`count` environments of one scenario, advanced together on `threads` threads (all cores if None). Each batch
+    """`count` environments of one scenario, advanced together on `threads` threads (as many as the job has cores if None). Each batch
     is a new array. After a fork, the child's calls raise RuntimeError."""
 
     def __init__(self, scenario: Union[str, Scenario], count: int, threads: Optional[int] = None, engine: str = "mujoco",
                  layout: Optional[str] = None) -> None:
         self.scenario = as_scenario(scenario)
         self.engine, self.layout = engine, layout_of(self.scenario, layout)
-        cores = len(os.sched_getaffinity(0))
-        self._pool = _core.Pool(self.scenario._core, engine, self.layout, count, threads or cores)
+        self._pool = _core.Pool(self.scenario._core, engine, self.layout, count, threads or _core.usable_cores())
 
     def __len__(self) -> int:
         return len(self._pool)

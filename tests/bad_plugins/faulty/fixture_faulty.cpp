@@ -2,6 +2,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -10,6 +11,7 @@
 #include <iterator>
 #include <limits>
 #include <list>
+#include <locale>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -56,7 +58,35 @@ void vandalise(const std::string& how) {
   }
 }
 
+struct Commas : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\1"; }
+};
+
+int deeper(int depth) {
+  volatile char frame[4096];
+  if (depth < 0) return 0;
+  frame[depth % 4096] = 'x';
+  return deeper(depth + 1) + frame[0];
+}
+
+// Of the process, which lgabench's part of it has to bear.
+void change_surroundings(const std::string& how) {
+  if (how == "chdir" && ::chdir("/") != 0) throw std::runtime_error("chdir");
+  if (how == "locale") std::locale::global(std::locale(std::locale::classic(), new Commas));
+  if (how == "handlers")
+    for (int signal = 1; signal < 32; ++signal) std::signal(signal, SIG_IGN);
+}
+
 void misbehave(const std::string& how) {
+  change_surroundings(how);
+  if (how == "at_quick_exit") std::quick_exit(3);
+  if (how == "noexcept") []() noexcept { throw std::runtime_error("inside noexcept"); }();
+  if (how == "recursion") std::printf("%d", deeper(0));
+  if (how == "kill") ::kill(::getpid(), SIGKILL);
+  if (how == "close_socket") ::close(3);
+  if (how == "replace_socket") ::dup2(1, 3);
   if (how == "scratch_file" || how == "scratch_gone" || how == "cells_gone" || how == "link" || how == "log_pipe")
     vandalise(how);
   if (how == "exit_4") ::_exit(4);
@@ -150,7 +180,8 @@ LGABENCH_METHOD("fixture_faulty", "0.1", "misbehaves once", Faulty, R"({
   "where": {"default": "act", "help": "in which call", "source": "test fixture", "values": ["select", "learn", "act",
             "destroy"]},
   "how": {"default": "not", "help": "what it does", "source": "test fixture", "values": ["not", "abort", "exit",
-    "quick_exit", "throw", "throw_int", "segfault", "spin", "sleep", "allocate", "print", "messages", "fork", "fork_and_spin",
+    "quick_exit", "at_quick_exit", "noexcept", "recursion", "kill", "close_socket", "replace_socket", "chdir", "locale",
+    "handlers", "throw", "throw_int", "segfault", "spin", "sleep", "allocate", "print", "messages", "fork", "fork_and_spin",
     "close", "thread", "nan", "exit_4", "throw_huge", "flood", "environment", "scratch_file", "scratch_gone",
     "cells_gone", "link", "log_pipe", "log", "cost", "cost_nan", "long_source", "escape_source"]}
 })")

@@ -2,7 +2,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cfenv>
 #include <chrono>
+#include <limits>
 #include <set>
 #include <thread>
 
@@ -29,6 +31,8 @@ class Unsound : public Policy {
     if (how_ == "remembers") return at_place(.01 * (++calls_ % 100));
     if (how_ == "address")
       return at_place(static_cast<double>(reinterpret_cast<std::uintptr_t>(this) % 1000003) / 1000003);
+    if (how_ == "rounding") std::fesetround(FE_UPWARD);
+    if (how_ == "far") return fixture::from_to(1e6, 0, .5, 0);
     if (how_ == "leak") kept_.push_back(observation);
     return at_place(how_ == "restored" ? .25 : .5);
   }
@@ -64,6 +68,7 @@ class UnsoundMethod : public fixture::FixtureMethod<fixture::StayPolicy> {
     services.log.epoch(1, 1, 0.0);
     if (how == "process" && ::fork() == 0)
       while (true) ::pause();
+    if (how == "nan_loss") services.log.epoch(2, 2, std::numeric_limits<double>::quiet_NaN());
     if (how == "undeclared") static_cast<void>(services.options.at("hiden"));
     if (how == "thread") std::thread([] { std::this_thread::sleep_for(std::chrono::hours(1)); }).detach();
     if (how == "descriptor") static_cast<void>(::open("/dev/null", O_RDONLY));
@@ -78,5 +83,5 @@ class UnsoundMethod : public fixture::FixtureMethod<fixture::StayPolicy> {
 
 LGABENCH_METHOD("fixture_unsound", "0.1", "works, but not as a method should", UnsoundMethod, R"({
   "how": {"default": "sound", "help": "what it does", "source": "test fixture", "values": ["sound", "clock", "remembers",
-    "address", "leak", "outside", "unshowable", "thread", "descriptor", "unseen", "process", "undeclared", "forgets"]}
+    "address", "leak", "outside", "unshowable", "thread", "descriptor", "unseen", "process", "undeclared", "forgets", "far", "rounding", "nan_loss"]}
 })")

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <list>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -34,6 +35,7 @@ class Reader : public Perceiver {
     if (how == "throws") throw std::runtime_error("its own failure");
     if (how == "crashes") std::raise(SIGSEGV);
     for (; how == "hangs";) ::pause();
+    for (std::list<std::string> held; how == "allocates";) held.emplace_back(std::size_t{1} << 24, 'x');
     if (how == "truth")
       throw std::runtime_error(
           std::string("scenario: ") +

@@ -1,0 +1,19 @@
+// Directories that are made.
+#pragma once
+#include <string>
+
+#include <lgabench/core/files.hpp>
+
+namespace lgabench {
+
+/// Makes the directory and those above it; one that is there stays. Returns what is in the way, or "": a link that
+/// leads nowhere, a file, what the system refuses.
+std::string try_make_directories(const fs::path& directory);
+/// Likewise. @throws InputError with what is in the way
+void make_directories(const fs::path& directory);
+
+/// The directory for temporary files: that of TMPDIR (else TMP, TEMP, TEMPDIR), else /tmp. @throws InputError with the
+/// variable and its value where that is no directory.
+fs::path temporary_directory();
+
+}  // namespace lgabench
