@@ -13,6 +13,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/core/shipped.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/expand.hpp>
@@ -31,11 +32,10 @@ constexpr const char* sections[] = {"methods",      "reference rows", "engines",
 // Shipped suites with what each says it is for, sorted by id.
 Json suites() {
   const fs::path directory = data_directory() / "suites";
-  std::error_code none_to_list;
   Json all = Json::array();
-  for (const std::string& id : json_names(directory, none_to_list)) {
+  for (const std::string& id : shipped_names("suites")) {
     const fs::path file = directory / (id + ".json");
-    const Json suite = read_json(file);
+    const Json suite = read_shipped_json(file);
     const JsonReader reader(suite, file.string());
     all.push_back({{"id", id}, {"summary", reader.has("note") ? reader.at("note").string() : ""}});
     if (reader.has("about") && reader.at("about").has("title"))

@@ -39,7 +39,11 @@ std::string Forecast::text(int jobs, const std::string& purpose) const {
   return fmt::format("{} {} with {} worker{}", what, duration(), jobs, jobs == 1 ? "" : "s");
 }
 
-std::string Forecast::duration() const { return (unknown ? "unknown, at least " : "about ") + duration_text(wall_s); }
+std::string Forecast::duration() const {
+  constexpr double shown_s = .5;
+  if (unknown && wall_s < shown_s) return "an unknown time";
+  return (unknown ? "unknown, at least " : "about ") + duration_text(wall_s);
+}
 
 Forecast forecast(const std::vector<const Cell*>& complete, const std::vector<const Cell*>& missing, const Costs& costs,
                   int jobs, const std::function<bool(const Cell&)>& is_unknown) {
