@@ -132,7 +132,7 @@ class Verify(BesideOneRun):
         run = json.loads((self.run_directory / "run.json").read_text())
         (self.run_directory / "run.json").write_text(json.dumps({**run, "machine": machine}))
 
-    def test_other_bits_are_owed_to_nobody_with_fma(self):
+    def test_with_fma_the_same_bits_are_owed(self):
         """Of a shipped method: whatever the processor is called, and as wide as its vectors are."""
         machine = json.loads((self.run_directory / "run.json").read_text())["machine"]
         flags = pathlib.Path("/proc/cpuinfo").read_text().split("flags", 1)[-1].split("\n")[0].split()

@@ -229,7 +229,7 @@ class Formats(unittest.TestCase):
         self.assertEqual([cell for line in written.splitlines() for cell in re.split(r"(?<!\\)\|", line) if len(cell.split()) > 50], [])
 
     def test_files_of_the_sources_are_as_their_schemas_say(self):
-        files = [(name, SOURCE / f"results/leaderboard/{name}.json") for name in ("labels", "tracks", "vouched", "vouched_entries", "scenes")]
+        files = [(name, SOURCE / f"results/leaderboard/{name}.json") for name in ("labels", "tracks", "vouched", "vouched_entries", "instructions", "scenes")]
         files += [("recorded_answers", file) for file in (SOURCE / "framework/lgabench/abstraction/answers").glob("*.json")]
         self.assertGreater(len(files), 10)
         for name, file in files:

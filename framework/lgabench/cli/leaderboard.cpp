@@ -302,14 +302,14 @@ void add_leaderboard(CLI::App& app, int& exit) {
               "build: check the board, then pack it into an archive, with license and citation");
   verb->footer(
       "Example: lgabench leaderboard add runs/q1-leaderboard --entry me.json && lgabench leaderboard build\n"
-      "  add       adds rows of a run; it refuses a run that is not the whole preset on the board's scenes\n"
-      "  verify    plays cells of an entry again, confined and without a cache, and records the outcome\n"
-      "  vouch     makes a recorded outcome count; until then it is a claim, and the entry has no rank\n"
-      "  build     writes the board's pages and tables, and entries of 0.4 and earlier in their shorter form\n"
-      "  check     compares these with the entries; it only reads files\n"
-      "  withdraw  takes an entry off the board; its files remain\n"
-      "  supersede takes new cells for entries from a run that computed them anew; the old files remain\n"
-      "  scenes    plays two cells of an entry again and draws an episode of each\n"
+      "  add        adds rows of a run; it refuses a run that is not the whole preset on the board's scenes\n"
+      "  verify     plays cells of an entry again, confined and without a cache, and records the outcome\n"
+      "  vouch      makes a recorded outcome count; until then it is a claim, and the entry has no rank\n"
+      "  build      writes the board's pages and tables, and entries of 0.4 and earlier in their shorter form\n"
+      "  check      compares these with the entries; it only reads files\n"
+      "  withdraw   takes an entry off the board; its files remain\n"
+      "  supersede  takes new cells for entries from a run that computed them anew; the old files remain\n"
+      "  scenes     plays two cells of an entry again and draws an episode of each\n"
       "Exit 1: refused, different, or a problem. Exit 2: none of these, but an entry was not verified or played.");
   verb->callback([a, actions, verb = verb.get(), &app, &exit] {
     expect_options_of(*verb, a->action, actions);
