@@ -108,7 +108,7 @@ class Unread(case.Case):
                           and "block" in question, expect=3)
         self.assertRegex(done.stdout, r"\nall +flat +1 .* 1 of 2 commands have no answer\n")
         self.assertRegex(done.stdout, r"\nall +structured +2 ")
-        self.assertIn('asked about "heart": expected a last line', done.stderr)
+        self.assertRegex(done.stderr, 'no answer: "[^"]*block[^"]*", asked about "heart": .*expected a last line')
         self.assertIn("1 questions have no answer; their commands are in no mean", done.stderr)
 
     def test_hypotheses_that_cannot_be_read_are_counted(self):
@@ -141,7 +141,7 @@ class Unplayed(case.BesideOneRun):
     def damage(self, folder):
         (folder / "timing.json").write_text("{}")
 
-    def fail(self, folder):
+    def crash(self, folder):
         """As the harness leaves a cell whose worker crashed."""
         status = json.loads((folder / "status.json").read_text())
         failed = {"state": "failed", "fault": "plugin", "reason": "it crashed", "log_tail": []}
@@ -166,7 +166,7 @@ class Unplayed(case.BesideOneRun):
 
     def test_a_report_without_a_number_is_no_success(self):
         for folder in self.cell_folders():
-            self.fail(folder)
+            self.crash(folder)
         for words in ((), ("--claims",), ("--format", "json")):
             self.assertIn("run: all its 4 cells failed: nothing was measured", self.call("report", "run", *words, expect=3).stderr)
         self.copy_first("whole")
@@ -176,13 +176,13 @@ class Unplayed(case.BesideOneRun):
         self.copy_first("b")
         self.assertEqual(self.call("compare", "run", "b").stderr, "")
         for run in "run", "b":
-            self.fail(self.cell_folders(run)[0])
+            self.crash(self.cell_folders(run)[0])
             shutil.rmtree(self.cell_folders(run)[1])
         said = self.call("compare", "run", "b").stderr
         for run in "run", "b":
             self.assertIn(f"{run}: of 4 cells 1 failed and 1 have not been played: only the others are compared", said)
         for folder in self.cell_folders("run"):
-            self.fail(folder)
+            self.crash(folder)
         self.assertIn("no cell finished in both", self.call("compare", "run", "b", expect=2).stderr)
 
 

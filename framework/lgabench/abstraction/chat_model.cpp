@@ -229,7 +229,7 @@ auto ChatLanguageModel::asked_until_read(Request request, const PromptTemplate& 
     expect_replies({request}, command, asks);
     const std::string said = counted(request).text;
     try {
-      const auto answer = read(said);
+      auto answer = read(said);
       of_form.any = true;
       return answer;
     } catch (const MethodError& e) {

@@ -259,7 +259,7 @@ std::string read_scenes(const HostJob& job, const CheckPhase& phase, CheckReport
     else
       report.note("names, " + job.environment,
                   fmt::format("{}; one name for all would be right for {}", found, named.by_one_name()),
-                  "what a run measures with it is its errors; return each segment of ids under its own number, with a "
+                  "a run with it measures its errors alone; return each segment of ids under its own number, with a "
                   "type and a texture of the space");
   } catch (const MethodError& e) {
     report.problem(doing, e.what(), "this call must succeed: a run makes it too");
