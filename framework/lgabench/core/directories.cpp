@@ -13,7 +13,7 @@ namespace {
 std::string in_the_way(const fs::path& directory) {
   fs::path part;
   std::error_code error;
-  if (directory.is_relative() && (fs::current_path(error), error)) return "the current directory is gone";
+  if (directory.is_relative() && fs::current_path(error).empty()) return "the current directory is gone";
   for (const fs::path& name : directory) {
     part /= name;
     const fs::file_status itself = fs::symlink_status(part, error), led_to = fs::status(part, error);
