@@ -9,10 +9,11 @@
 namespace lgabench {
 namespace {
 
-// The first part of the path that is a link to what is not there, or a file; none where the system refused.
+// The first part of the path that is a link to what is not there, or a file; "" where the system refused.
 std::string in_the_way(const fs::path& directory) {
   fs::path part;
   std::error_code error;
+  if (directory.is_relative() && fs::current_path(error).empty()) return "the current directory is gone";
   for (const fs::path& name : directory) {
     part /= name;
     const fs::file_status itself = fs::symlink_status(part, error), led_to = fs::status(part, error);

@@ -86,7 +86,7 @@ pid_t start_process(const ProcessStart& start) {
   std::vector<int> spare(start.descriptors.size());
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) throw Refused("pipe");
-  const Descriptor reading(ends[0]);
+  Descriptor reading(ends[0]);
   Descriptor writing(ends[1]);
   keep_ends_of_children();
   const pid_t parent = ::getpid();
@@ -101,6 +101,7 @@ pid_t start_process(const ProcessStart& start) {
     }
     return pid;
   }
+  reading.close();
   const auto give_up = [&writing](Step step) {
     const Stopped stopped{step, errno};
     [[maybe_unused]] const ssize_t told = ::write(writing.fd, &stopped, sizeof stopped);  // or nobody listens any more
@@ -113,8 +114,14 @@ pid_t start_process(const ProcessStart& start) {
   errno = 0;
   if (start.in_child && !start.in_child()) give_up(Step::in_child);
   // By way of numbers beyond all that are wanted: one may be another's, and dup2 onto itself would keep CLOEXEC.
-  for (std::size_t i = 0; i < spare.size(); ++i)
-    if ((spare[i] = ::fcntl(start.descriptors[i].first, F_DUPFD_CLOEXEC, last + 1)) < 0) give_up(Step::descriptors);
+  // Each of ours is closed after its last use: few may be left.
+  for (std::size_t i = 0; i < spare.size(); ++i) {
+    const int ours = start.descriptors[i].first;
+    if ((spare[i] = ::fcntl(ours, F_DUPFD_CLOEXEC, last + 1)) < 0) give_up(Step::descriptors);
+    bool is_last = ours > 2;
+    for (std::size_t j = i + 1; j < spare.size(); ++j) is_last = is_last && start.descriptors[j].first != ours;
+    if (is_last) ::close(ours);
+  }
   if (writing.fd <= last && (writing.fd = ::fcntl(writing.fd, F_DUPFD_CLOEXEC, last + 1)) < 0) ::_exit(not_started);
   for (std::size_t i = 0; i < spare.size(); ++i)
     if (::dup2(spare[i], start.descriptors[i].second) < 0) give_up(Step::descriptors);

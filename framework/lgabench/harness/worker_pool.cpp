@@ -280,7 +280,10 @@ WorkerFault why_it_ended(const WorkerEnd& end, double timeout_s) {
   if (end.timed_out) return {fmt::format("stopped after {} s {}{}", timeout_s, where, awaited), "plugin"};
   if (end.signal != 0) {
     const bool outside = end.signal == SIGKILL || end.signal == SIGTERM;  // a person, or memory ran out
-    return {fmt::format("signal {} ({}) {}", end.signal, ::strsignal(end.signal), where), outside ? "host" : "plugin"};
+    // Methods, perturbations and perceivers have processes of their own.
+    return {fmt::format("signal {} ({}) {}{}", end.signal, ::strsignal(end.signal), where,
+                        outside ? "" : " of the worker itself, in which the engine runs"),
+            outside ? "host" : "plugin"};
   }
   if (end.complaint) return {end.complaint->reason, end.complaint->by_plugin ? "plugin" : "host"};
   return {fmt::format("exited with {} {}", end.exit_code, where), "plugin"};
