@@ -14,6 +14,7 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/expand.hpp>
 #include <lgabench/harness/suite.hpp>
@@ -117,7 +118,7 @@ class GivenReplies : public ChatClient {
         reader.fail("the messages of --questions; the model was shown others");
       ChatReply reply{reader.at("reply").string()};
       if (reader.has("tokens")) reply.tokens = reader.at("tokens").integer(0, 1LL << 40);
-      if (reader.has("seconds")) reply.seconds = reader.at("seconds").number();
+      if (reader.has("seconds")) reply.seconds = read_seconds(reader.at("seconds"));
       keep(reader, id, reply);
     }
     if (asked_.empty()) throw InputError(fmt::format("{}: expected a line for each question", file.string()));
@@ -179,7 +180,8 @@ void keep_replies(const AnswersArguments& a) {
         unanswered.insert(unanswered.end(), e.questions.begin(), e.questions.end());
       }
     });
-    next = fmt::format("lgabench select --suite {} --score --answers cassette:{}", suite, a.cassette.string());
+    next =
+        shell_line({"lgabench", "select", "--suite", suite, "--score", "--answers", "cassette:" + a.cassette.string()});
   }
   for (const std::string& question : unanswered) to_stderr("no answer: {}\n", one_line(question));
   if (!unanswered.empty())

@@ -8,7 +8,9 @@
 
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/outcome.hpp>
+#include <lgabench/cli/own_names.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/host/python_method.hpp>
 #include <lgabench/leaderboard/add.hpp>
@@ -44,7 +46,7 @@ int add(const LeaderboardArguments& a) {
   if (print_all(added.refused, "refused: ") != ok) return regression;
   for (const std::string& entry : added.entries) to_stdout("added {}\n", entry);
   for (const std::string& entry : added.evidence) to_stdout("evidence added to {}\n", entry);
-  to_stderr("Next: lgabench leaderboard build --board {}\n", a.board.string());
+  to_stderr("Next: lgabench leaderboard build --board {}\n", path_word(a.board));
   return ok;
 }
 
@@ -117,7 +119,8 @@ int verify(LeaderboardArguments a) {
     const std::string found = a.verify.fresh ? fresh_words(entry, *line) : replay_words(*line);
     to_stdout("{} {}: {} (nonce {})\n", passed ? "agrees " : "DIFFERS", directory.string(), found,
               line->at("nonce").get<std::string>());
-    to_stderr("To make it count: lgabench leaderboard vouch {} {}\n", entry.id(), entry.verifications.size() + 1);
+    to_stderr("To make it count: lgabench leaderboard vouch {} {} --board {}\n", shell_line({entry.id()}),
+              entry.verifications.size() + 1, path_word(a.board));
     differs = differs || !passed;
   }
   if (unverified > 0) to_stderr("{} of {} entries were not verified\n", unverified, entries.size());

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <memory>
 #include <set>
 
@@ -103,8 +104,19 @@ bool find_others_causes(const RunPlan& plan, const Catalogue& catalogue, const R
   return causes.has_value();
 }
 
+// What a plugin's process may read is its folder (docs/trust.md).
+void warn_of_home(const Catalogue& catalogue) {
+  const char* const home = std::getenv("HOME");
+  std::error_code none_there;
+  for (const PluginInfo& plugin : catalogue.plugins)
+    if (home && fs::equivalent(plugin.file.parent_path(), home, none_there))
+      to_stderr("note: {} may read what lies beside it, your home directory; put it into a folder of its own\n",
+                plugin.file.string());
+}
+
 int run(const RunArguments& a) {
   const auto [catalogue, plan] = plan_run(a);
+  if (!a.quiet) warn_of_home(catalogue);
   if (const std::string missing = missing_encoder(commands_of(plan)); !missing.empty())
     to_stderr("note: {}\n", missing);
   if (a.scene_seed && !a.quiet)
