@@ -20,6 +20,13 @@ Cassette::Cassette(const fs::path& file) : file_(file) {
   if (fs::exists(file) && !read()) to_stderr("{}: the last line is cut off and was not read\n", file.string());
 }
 
+double read_seconds(const JsonReader& reader) {
+  constexpr double longest = 1e7;
+  const double seconds = reader.number();
+  if (!(seconds >= 0 && seconds <= longest)) reader.fail(fmt::format("seconds from 0 to {}", longest));
+  return seconds;
+}
+
 bool Cassette::read() {
   const std::string text = read_file(file_);
   if (text.size() < size_) throw InputError(fmt::format("{}: became shorter since it was read", file_.string()));
@@ -30,7 +37,7 @@ bool Cassette::read() {
     const JsonReader reader(line, place);
     reader.only({"key", "model", "request", "reply", "tokens", "seconds"});
     replies_[reader.at("key").string()] = {reader.at("reply").string(), reader.at("tokens").integer(0, 1LL << 40),
-                                           reader.at("seconds").number()};
+                                           read_seconds(reader.at("seconds"))};
     models_.insert(to_text(AskedModel::of(reader.at("model").string(), reader.at("request"))));
   }
   return size_ == text.size();

@@ -19,6 +19,9 @@ struct ChatReply {
   double seconds = 0;    // from the first attempt to the reply
 };
 
+/// Seconds of waiting for a reply. @throws InputError for a number that no wait takes.
+double read_seconds(const JsonReader& reader);
+
 /// A file of JSON lines {"key", "model", "request", "reply", "tokens", "seconds"}; each reply adds a line, which is on
 /// the disk before add() returns, so that an interrupted series of questions goes on where it stopped. May be used by
 /// several threads, and by several processes that take turns to ask.

@@ -1,7 +1,11 @@
 #include <lgabench/core/feature_space.hpp>
 
+#include <fmt/format.h>
+
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/read_space.hpp>
+#include <lgabench/core/suggest.hpp>
 
 namespace lgabench {
 namespace {
@@ -26,10 +30,21 @@ std::vector<std::string> read_names(const JsonReader& reader, const std::vector<
 }  // namespace
 
 FeatureSpace load_feature_space(const std::string& id) {
-  const fs::path file = data_directory() / "spaces" / (id + ".json");
+  const fs::path spaces = data_directory() / "spaces", file = spaces / (id + ".json");
+  std::error_code none_to_list;
+  if (const auto known = json_names(spaces, none_to_list); !contains(known, id))
+    throw InputError(none_named("feature space", id, known));
   const Json document = read_json(file);
   const JsonReader reader(document, file.string());
   return {id, reader.at("object_types").strings(), reader.at("textures").strings()};
+}
+
+FeatureSpace read_space(const JsonReader& name) {
+  try {
+    return load_feature_space(name.string());
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("{}: {}: {}", name.file(), name.place(), e.what()));
+  }
 }
 
 bool FeatureSet::contains(const std::string& object_type, const std::string& texture) const {
