@@ -75,6 +75,20 @@ class Confinement(Case):
         self.assertEqual([found["read", str(path)] for path in hidden], ["EACCES"] * len(hidden))
         self.assertEqual([found["read", str(path)] for path in readable], ["reached"] * len(readable))
 
+    def test_hidden_files_beside_a_plugin(self):
+        """As in a home, where somebody saved a stranger's plugin. What an interpreter runs from is read all the same."""
+        shutil.copytree(FIXTURES / "faulty", self.dir / "home")
+        for name in ".ssh/id_rsa", ".netrc", "notes.txt":
+            (self.dir / "home" / name).parent.mkdir(exist_ok=True)
+            (self.dir / "home" / name).write_text("k")
+        self.environment["HOME"] = str(self.dir / "home")
+        words = [f"read+path={self.dir}/home/{name}" for name in (".ssh/id_rsa", ".netrc", "notes.txt", "fixture_probe.so")]
+        found = self.probes(words, plugins="home")
+        self.need("Landlock")
+        self.assertEqual(list(found.values()), ["EACCES", "EACCES", "reached", "reached"])
+        said = self.call(*RUN, "--plugin-path", "home", "--methods", "fixture_probe+how=own_files", "--out", "more").stderr
+        self.assertEqual(said.count("fixture_probe.so may read what lies beside it, your home directory"), 1, said)
+
     def test_files_where_the_data_lies_beside_the_plugin(self):
         """As in a virtual environment that holds lgabench: its interpreter must list the directories above the data."""
         shutil.copytree(FIXTURES / "faulty", self.dir / "mine")

@@ -228,7 +228,11 @@ std::string read_scenes(const HostJob& job, const CheckPhase& phase, CheckReport
     report.judge(doing, same ? "" : "a picture seen again, in another order, has other names",
                  "the same picture has the same names again",
                  "use no random numbers, and keep nothing from one call to the next");
-    report.ok("names, " + job.environment, fmt::format("{} of {} objects as the simulator names them", right, objects));
+    const std::string named = fmt::format("{} of {} objects as the simulator names them", right, objects);
+    if (right > 0)
+      report.ok("names, " + job.environment, named);
+    else
+      report.note("names, " + job.environment, named, "such names are no better than none to a method");
   } catch (const MethodError& e) {
     report.problem(doing, e.what(), "this call must succeed: a run makes it too");
   }

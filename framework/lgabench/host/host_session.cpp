@@ -59,6 +59,21 @@ Json hello_of(const HostJob& job, const protocol::Layout& layout) {
   return hello;
 }
 
+// Leaves out what begins with a dot in the plugin's folder, which may be its author's or its user's home; not what the
+// interpreter runs from.
+void leave_out_dotted(const fs::path& folder, Reach& reach) {
+  std::error_code none_there;
+  for (const auto& entry : fs::directory_iterator(fs::weakly_canonical(folder), none_there)) {
+    const std::string path = entry.path().string() + "/";
+    const auto holds = [&path](const fs::path& read) {
+      return (fs::weakly_canonical(read).string() + "/").rfind(path, 0) == 0;
+    };
+    if (entry.path().filename().string().rfind('.', 0) == 0 &&
+        std::none_of(reach.reads.begin(), reach.reads.end(), holds))
+      reach.unread.push_back(entry.path());
+  }
+}
+
 // What a plugin's process may read: what it starts with, its own folder, and the data that learners use.
 Reach reach_of(const HostJob& job) {
   const fs::path data = data_directory();
@@ -68,6 +83,7 @@ Reach reach_of(const HostJob& job) {
   reach.writes.push_back(job.scratch);
   reach.hidden = job.hidden;
   if (!job.plugin.python.is_null()) add_python(reach, job.plugin.python);
+  leave_out_dotted(job.plugin.file.parent_path(), reach);
   reach.reads.push_back(encoder_directory());
   std::error_code none_there;
   for (const auto& entry : fs::directory_iterator(data, none_there)) {
