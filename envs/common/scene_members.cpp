@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <lgabench/core/contains.hpp>
 
 namespace lgabench::common {
@@ -14,6 +16,7 @@ std::vector<std::string> read_missing(const JsonReader& list, const std::vector<
   if (names.empty()) list.fail("at least one name");
   for (const JsonReader& name : list.elements()) {
     if (!lgabench::contains(space, name.string())) name.fail("a name of the feature space");
+    if (std::count(names.begin(), names.end(), name.string()) > 1) name.fail("each name once");
     for (const ScenarioCommand& command : scenario.commands)
       if (lgabench::contains(command.truth.target.product().*meant, name.string()))
         name.fail(fmt::format("a name outside of what \"{}\" means", command.utterance));

@@ -750,7 +750,7 @@ class Written(Case):
         for wrong, place in (
                 (answer(target={"object_types": ["hart"], "textures": []}), "/answers/0/target/object_types/0: expected a name of the feature space"),
                 (answer(target={"object_types": ["heart"]}), '/answers/0/target: expected a member "textures"'),
-                (answer(aviod={}), '/answers/0: unknown member "aviod" (did you mean "avoid"?)'), (answer(space="kitchen"), "/answers/0/space: expected a feature space: "),
+                (answer(aviod={}), '/answers/0: unknown member "aviod" (did you mean "avoid"?)'), (answer(space="kitchen"), "/answers/0/space: no feature space \"kitchen\", expected one of: "),
                 (twice, "/answers/1: expected each scenario"),
                 ({**self.answers, "model": ""}, "/model: expected words"), ({**self.answers, "answers": []}, "/answers: expected at least one"),
                 ({**self.answers, "modle": 1}, '/: unknown member "modle"')):

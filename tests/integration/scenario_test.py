@@ -9,7 +9,8 @@ import shlex
 import subprocess
 import unittest
 
-from case import Case
+from case import BUILD, Case
+from python_test import HAS_NUMPY, PYTHON
 
 NAME = ("round", "--command", "Bring me something round.", "--types", "round,ring")
 SMALL = ("--demos", "2", "--seeds", "0", "--episodes", "2", "--set", "*.epochs=2")
@@ -82,13 +83,13 @@ class OwnScenario(Case):
             "negation": ("a heart of any colour but red", "--types", "heart", "--textures", "ALL but red", "--careless", "heart/red"),
             "union": ("a red heart or a blue star", "--types", "heart", "--textures", "red", "--also", "star/blue",
                       "--careless", "heart/blue", "--careless", "star/red"),
-            "relation": ("the heart left of the bowl", "--types", "heart", "--which", "left_of", "--of", "bowl"),
+            "relation": ("the heart left of the bowl", "--types", "heart", "--which", "left_of", "--relative-to", "bowl"),
             "superlative": ("the letter that comes first in 'grate'", "--types", "letter A,letter E,letter G", "--which",
                             "first_in", "--order", "letter G,letter A,letter E"),
             "preference": ("something to drink", *household, "--types", "water bottle", "--words",
                            "soda can,water bottle,juice box", "--careless", "soda can,juice box", "--undecided", "mug"),
             "compound": ("the fruit nearest to the spoon, unless it is red", *household, "--types", "apple,pear",
-                         "--textures", "ALL but red", "--which", "nearest_to", "--of", "spoon", "--careless", "apple,pear/red"),
+                         "--textures", "ALL but red", "--which", "nearest_to", "--relative-to", "spoon", "--careless", "apple,pear/red"),
         }
         for family, (what, *words) in families.items():
             with self.subTest(family):
@@ -147,6 +148,11 @@ class OwnScenario(Case):
             ((*NAME, "--task", "sweep"), '"avoid" for sweep'),
             ((*NAME, "--task", "rotate"), "angle_deg"),
             ((*NAME, "--distractors", "x"), "--distractors: expected FEWEST:MOST"),
+            ((*NAME, "--distractors", "01:2"), "--distractors: expected FEWEST:MOST"),
+            ((*NAME, "--also", "heart,"), "a name of the feature space"),
+            ((*NAME, "--directory", "a:b"), "a:b: expected a path without a colon"),
+            (("round", "--command", "", "--types", "round"), "/commands/0/utterance: expected words, in a line"),
+            ((*NAME, "--unseen", NAME[2]), "/commands/1/utterance: expected other words than those of a command that is demonstrated"),
         ]:
             with self.subTest(words):
                 self.assertIn(reason, self.new(*words, expect=2).stderr)
@@ -165,7 +171,13 @@ class OwnScenario(Case):
         self.assertRegex(said, r"note +test, cells +any visible object is right")
 
     def test_ids_are_unique(self):
-        self.new("heart", "--command", "Bring me the heart.", "--types", "heart")
+        said = self.new("heart", "--command", "Bring me the heart.", "--types", "heart", expect=2).stderr
+        self.assertRegex(said, "new-scenario: expected another id than heart, which .*/heart.json has; nothing was written\n$")
+        self.assertEqual(list(self.dir.iterdir()), [])
+        self.new("other", "--command", "Bring me the heart.", "--types", "heart")
+        own = json.loads((self.dir / "other.json").read_text())
+        (self.dir / "heart.json").write_text(json.dumps({**own, "id": "heart"}))
+        (self.dir / "other.json").unlink()
         for words in ("list",), ("render", "heart"):
             done = self.call(*words, "--scenario-path", ".", expect=2)
             self.assertIn("heart.json: expected another id", done.stderr)
@@ -174,6 +186,106 @@ class OwnScenario(Case):
         os.rename(self.dir / "heart.json", self.dir / "mine.json")
         done = self.call("render", "mine", "--scenario-path", ".", expect=2)
         self.assertIn('/id: expected "mine", as the file is named', done.stderr)
+
+
+    def test_names_are_those_of_plugins(self):
+        for name in "bad name", "Round", "1bad", "a,b", "-x", "../x", "x" * 64:
+            for verb in "new-scenario", "new-suite", "new-plugin":
+                words = NAME[1:] if verb != "new-plugin" else ()
+                said = self.call(verb, *words, "--", name, expect=2).stderr
+                self.assertEqual(said, f'lgabench: {verb}: "{name}": expected at most 63 lower-case letters, digits and underscores, a letter first\n')
+        self.assertEqual(list(self.dir.iterdir()), [])
+
+    def test_a_file_of_another_kind_is_said_to_be_one(self):
+        self.call("select", "--suite", "q1", "--best-product", "best.json")
+        said = self.call("check-scenario", "best.json", expect=2).stderr
+        self.assertEqual(said, 'lgabench: best.json: /: expected a member "id"\n')
+
+    def test_what_a_later_command_would_refuse_is_refused_when_it_is_read(self):
+        self.new(*NAME)
+        made = json.loads((self.dir / "round.json").read_text())
+        for change, says in [({"id": "a,b"}, '/id: expected a name of at most 64 letters'),
+                             ({"feature_space": "kitchen"}, '/feature_space: no feature space "kitchen", expected one of: '),
+                             ({"commands": [{**made["commands"][0], "utterance": "two\nlines"}]}, "/commands/0/utterance: expected words, in a line")]:
+            file = self.dir / f"{change.get('id', 'round')}.json"
+            file.write_text(json.dumps({**made, **change}))
+            for words in ("check-scenario", file.name), ("info", file.stem, "--scenario-path", "."), ("run", "q1", "--scenarios=" + file.stem, "--scenario-path", "."):
+                said = self.call(*words, expect=2).stderr
+                self.assertEqual(len(said.splitlines()), 1, said)
+                if "," not in file.stem or words[0] != "run":
+                    self.assertIn(f"{file.name}: {says}", said)
+
+
+class Printed(Case):
+    """What a command prints to be run next, run as it stands by a shell, in a directory with a space and a quote."""
+    odd = "it's odd"
+
+    def setUp(self):
+        super().setUp()
+        self.environment["PATH"] = f"{BUILD / 'bin'}:{self.environment['PATH']}"
+
+    def shell(self, line, *more, expect=0):
+        done = subprocess.run(["bash", "-c", f"{line} {shlex.join(more)}"], capture_output=True, text=True, cwd=self.dir,
+                              env=self.environment, timeout=300)
+        self.assertEqual(done.returncode, expect, (line, done.stderr))
+        return done.stdout
+
+    def run_all(self, said):
+        """Runs each command in the text, runs and scores with few scenes. @returns the verbs."""
+        few = {"run": ("--engines", "kinematic", "--limit", "2", "--episodes", "2", "--set", "*.epochs=1"),
+               "check-scenario": ("--scenes", "2"), "select": ("--scenes", "2")}
+        lines = re.findall(r"(lgabench (?:check-scenario|run|report|select) .*)$", said, re.M)
+        for line in lines:
+            verb = line.split()[1]
+            out = () if "--out " in line or verb != "run" else ("--out", f"out {len(line)}")
+            self.shell(line, *few.get(verb, ()), *out)
+        return [line.split()[1] for line in lines]
+
+    def test_of_new_scenario(self):
+        for directory in self.odd, "-dash":
+            (self.dir / directory).mkdir()
+            said = self.call("new-scenario", *NAME, f"--directory={directory}").stdout
+            self.assertEqual(self.run_all(said), ["check-scenario", "run"])
+
+    def test_of_new_suite(self):
+        for name, words in ("round_things", NAME[1:]), ("shipped", ("--scenarios", "heart,letter")):
+            said = self.call("new-suite", name, *words, f"--directory={self.odd} {name}").stdout
+            self.assertEqual(self.run_all(said), ["run", "run", "report"])
+        said = self.call("new-suite", "near", *NAME[1:], "--near-miss").stdout
+        arms = {arm["arm"]: arm["distractors"] for arm in json.loads((self.dir / "near/near_1.json").read_text())["tests"]}
+        self.assertEqual(arms, {"test": [1, 2], "near_miss": [4, 4]})
+
+    def test_of_commands(self):
+        said = self.call("commands", "--seed", "3", "--n", "8", "--out", self.odd).stdout
+        self.assertEqual(self.run_all(said), ["select", "run"])
+        said = self.call("commands", "--seed", "3", "--persons", "2", "--out", self.odd + "/people").stdout
+        self.assertEqual(self.run_all(said), ["run"])
+        for words in ("--seed", "20261127", "--persons", "2"), ("--seed", "2026", "--n", "8"):
+            said = self.call("commands", *words, "--out", f"shipped {words[1]}").stdout
+            self.assertRegex(said, r"lgabench has these scenarios already, such as \w+: another --seed draws some that can be played\n$")
+            self.assertEqual(self.run_all(said), [])
+
+    def test_of_study(self):
+        said = self.call("study", "new", self.odd).stdout
+        check, serve = re.findall(r"^  (lgabench study .*)$", said, re.M)
+        self.shell(check, expect=2)  # blanks to fill in
+        self.shell(f"timeout -s INT 5 {serve} --port 0", expect=124)  # it serves until it is stopped
+        rehearse, = re.findall(r"`(lgabench study rehearse [^`]*)`", (self.dir / self.odd / "README.md").read_text())
+        said = self.shell(rehearse, "--people", "1")
+        report, run = re.findall(r"^  (lgabench .*)$", said, re.M)
+        self.shell(report)
+        self.shell(run, "--methods", "human", "--dry-run")
+
+    def test_of_new_plugin(self):
+        said = self.call("new-plugin", "none", "--kind", "python", "--directory", self.odd).stdout
+        self.assertIn("none.py", said)
+        check, = re.findall(r"^    (lgabench check-plugin .*)$", (self.dir / self.odd / "README.md").read_text(), re.M)
+        if HAS_NUMPY:
+            self.shell(f"cd {shlex.quote(self.odd)} && {check}", "--python", PYTHON)
+        for name, kind in ("lga", "method"), ("lga", "python"), ("oracle", "method"), ("mujoco", "engine"), ("camera_turn", "perturbation"), ("read", "perceiver"):
+            said = self.call("new-plugin", name, "--kind", kind, expect=2).stderr
+            self.assertIn(f"new-plugin: expected another id than {name}, which a ", said)
+        self.assertIn("which CMake has a target of", self.call("new-plugin", "test", expect=2).stderr)
 
 
 class OwnSuite(Case):
@@ -219,7 +331,7 @@ class OwnSuite(Case):
             said = self.call("new-suite", "mine", *words, expect=2, stdin=subprocess.DEVNULL).stderr
             self.assertEqual(said.count("\n"), 1, said)
             self.assertIn(says, said)
-        self.assertIn("expected letters", self.call("new-suite", "a/b", "--scenarios", "heart", expect=2).stderr)
+        self.assertIn("which a shipped suite has", self.call("new-suite", "q1", "--scenarios", "heart", expect=2).stderr)
         self.assertEqual(list(self.dir.iterdir()), [])
         self.call("new-suite", "mine", "--scenarios", "heart")
         self.assertIn("exists already", self.call("new-suite", "mine", "--scenarios", "heart", expect=2).stderr)

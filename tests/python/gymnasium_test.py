@@ -93,6 +93,9 @@ class Gymnasium(unittest.TestCase):
         env.close()
         with self.assertRaises(TypeError):
             copy.deepcopy(env.unwrapped)
+        for one in env.unwrapped, make_vec("heart", 2).unwrapped:
+            with self.assertRaisesRegex(TypeError, "^a scene's physics cannot be copied or pickled"):
+                pickle.dumps(one)
         again = gymnasium.make(pickle.loads(pickle.dumps(env.spec)))
         self.assertTrue(numpy.array_equal(again.reset(seed=0)[0]["rgb"], obs["rgb"]))
 
@@ -197,6 +200,20 @@ class Gymnasium(unittest.TestCase):
         words = bare.reset(seed=0)[0]["instruction"]
         self.assertEqual((len(words), words[0], list(words)), (2, "Bring me the heart.", ["Bring me the heart."] * 2))
         bare.close()
+    def test_a_list_of_options_has_a_value_for_each_environment(self):
+        vector = make_vec("many_hearts", 3, split="test", layout="continuous")
+        control, other = vector.unwrapped.scenario.arms[:2]
+        single = make("many_hearts", split="test", layout="continuous")
+        _, infos = vector.reset(options={"arm": [control, other, control], "index": numpy.array([4, 4, 7]), "scene_seed": 2})
+        expected = [single.reset(options={"arm": arm, "index": index, "scene_seed": 2})[1]["scene"]
+                    for arm, index in ((control, 4), (other, 4), (control, 7))]
+        self.assertEqual(list(infos["scene"]), expected)
+        self.assertEqual(len(set(expected)), 3)
+        for options, says in (({"arm": [control]}, "^options arm: expected one value, or 3, one for each environment, got 1$"),
+                              ({"index": (0, 1)}, "^options index: expected one value, or 3, .*, got 2$"),
+                              ({"split": ["test"] * 3}, "^options split: expected one for all environments$")):
+            with self.assertRaisesRegex(ValueError, says):
+                vector.reset(options=options)
 
     def test_a_scenario_of_ones_own(self):
         path = pathlib.Path(registration._core.data_directory()) / "scenarios/heart.json"

@@ -1,6 +1,8 @@
 """lgabench's scenes without Gymnasium: bytes, order of calls, threads, errors."""
 import multiprocessing
 import os
+import pathlib
+import pickle
 import resource
 import threading
 import unittest
@@ -67,6 +69,15 @@ class Scenes(unittest.TestCase):
         env.close()
         with self.assertRaisesRegex(RuntimeError, "closed"):
             env.reset()
+
+    def test_a_scenario_is_pickled_as_its_arguments(self):
+        file = pathlib.Path(lgabench._core.data_directory()) / "scenarios/heart.json"
+        for one in lgabench.Scenario("red_heart"), lgabench.Scenario(path=os.path.relpath(file)):
+            again = pickle.loads(pickle.dumps(one))
+            self.assertEqual((again.id, again.commands, again.truth(0)), (one.id, one.commands, one.truth(0)))
+        for one in lgabench.Environment("heart", ENGINE), lgabench.Pool("heart", 2, engine=ENGINE):
+            with self.assertRaisesRegex(TypeError, "^a scene's physics cannot be copied or pickled"):
+                pickle.dumps(one)
 
     def test_bad_arguments(self):
         env = lgabench.Environment("heart", ENGINE)

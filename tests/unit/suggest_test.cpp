@@ -29,5 +29,18 @@ TEST(NoneNamed, SuggestsAndLists) {
             "no scenario \"moon\", expected one of: heart, letter");
 }
 
+TEST(NoneNamed, OfManyNamesSome) {
+  std::vector<std::string> many;
+  for (int i = 100; i < 200; ++i) many.push_back(std::to_string(i));
+  many.emplace_back("best_of_all");
+  EXPECT_EQ(
+      none_named("scenario", "best_x", many),
+      "no scenario \"best_x\", expected one of 101, such as: best_of_all, 100, 101, 102, 103, 104, 105, 106 (lgabench "
+      "list scenarios)");
+  EXPECT_EQ(none_named("row", "moon", many).find("lgabench list"), std::string::npos) << "no command lists these";
+  EXPECT_EQ(some_of({"a", "b"}), "a, b");
+  EXPECT_EQ(some_of(many, " | "), "100 | 101 | 102 | 103 | 104 | 105 | 106 | 107 | ... (93 more)");
+}
+
 }  // namespace
 }  // namespace lgabench

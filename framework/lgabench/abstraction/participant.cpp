@@ -7,6 +7,7 @@
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/suggest.hpp>
 
 namespace lgabench {
 namespace {
@@ -25,6 +26,7 @@ Selection read_made(const JsonReader& reader, const Scenario& scenario, const st
   Selection selection = read_selection(reader.at("selection"), scenario);
   selection.provenance = Provenance::human;
   selection.asked_as = asked_as;
+  constexpr double longest = 1e7;
   selection.cost.human_seconds = reader.at("seconds").number();
   constexpr double most = 1e9;
   if (!(selection.cost.human_seconds > 0 && selection.cost.human_seconds <= most))
@@ -36,7 +38,9 @@ void read_answer(const JsonReader& reader, Participant& participant) {
   reader.only({"scenario", "command", "asked_as", "specified", "edited"});
   const std::string id = reader.at("scenario").string(), utterance = reader.at("command").string();
   const std::vector<std::string> ids = scenario_ids();
-  if (!contains(ids, id)) reader.at("scenario").fail(fmt::format("one of {}", fmt::join(ids, ", ")));
+  if (!contains(ids, id))
+    throw InputError(
+        fmt::format("{}: {}: {}", reader.file(), reader.at("scenario").place(), none_named("scenario", id, ids)));
   const Scenario scenario = load_scenario(id);
   const std::vector<std::string> utterances = scenario.utterances();
   if (!contains(utterances, utterance))

@@ -8,7 +8,9 @@
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/read_space.hpp>
 #include <lgabench/core/shipped.hpp>
+#include <lgabench/core/suggest.hpp>
 #include <lgabench/core/terminal.hpp>
 
 namespace lgabench {
@@ -25,9 +27,7 @@ std::string line(const JsonReader& reader) {
 const FeatureSpace& space_of(const JsonReader& reader, std::map<std::string, FeatureSpace>& known) {
   const std::string id = reader.string();
   if (const auto found = known.find(id); found != known.end()) return found->second;
-  const std::vector<std::string>& all = shipped_names("spaces");
-  if (!contains(all, id)) reader.fail(fmt::format("a feature space: {}", fmt::join(all, ", ")));
-  return known.emplace(id, load_feature_space(id)).first->second;
+  return known.emplace(id, read_space(reader)).first->second;
 }
 
 // Members that are sets belong to the second role of some task; which one, a command says.
@@ -132,7 +132,7 @@ const RecordedAnswer& RecordedLanguageModel::expect(const std::string& utterance
       fmt::format("answers of {}: none for {}\"{}\" in the space {}, only for: {}; --answers openai asks "
                   "a model (docs/language-models.md)",
                   file_.stem().string(), scenario_.empty() ? "" : fmt::format("scenario {}, ", scenario_), utterance,
-                  space_.id, fmt::join(known(), " | ")));
+                  space_.id, some_of(known(), " | ")));
 }
 
 std::vector<bool> RecordedLanguageModel::answer(const Command& command, const FeatureSpace&,

@@ -339,7 +339,7 @@ class MethodCheck {
         continue;
       }
       const auto policy = learn_from(*bench, asked, selected, scenes);
-      if (first && job_.plugin.asks == "accept") report_.ok("person", objects_shown(selected));
+      if (first && job_.plugin.asks == "accept") judge_asking(selected);
       for (const Instruction& instruction : selected.instructions)
         use.selections += canonical(distribution_json(instruction.selection)) + '\n';
       if (first && asked.log.lines.empty())
@@ -415,11 +415,16 @@ class MethodCheck {
     report_.ok("cost", asked > 0 ? fmt::format("{} questions asked", asked) : "services.lm was not asked");
   }
 
-  // What a person was asked by the end of revise().
-  static std::string objects_shown(const Selected& selected) {
+  // What a person was asked by the end of revise(). A method that may ask nothing shows nothing of how it asks.
+  void judge_asking(const Selected& selected) {
     int shown = 0;
     for (const Instruction& instruction : selected.instructions) shown += instruction.selection.cost.human_queries;
-    return shown > 0 ? fmt::format("asked, at the price of {} objects shown", shown) : "services.human was not asked";
+    if (shown > 0)
+      report_.ok("person", fmt::format("asked, at the price of {} objects shown", shown));
+    else if (job_.options.value("questions", Json(1)) == 0)
+      report_.note("person", "services.human was not asked: questions=0", "check it with --set questions=12 too");
+    else
+      report_.note("person", "services.human was not asked", "return true in needs().revise, and ask in revise()");
   }
 
   // Commands of other kinds than the first: nothing fits, and those that speak of a second set.

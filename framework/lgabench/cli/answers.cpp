@@ -14,6 +14,7 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/expand.hpp>
 #include <lgabench/harness/suite.hpp>
@@ -185,7 +186,8 @@ void keep_replies(const AnswersArguments& a) {
         unanswered.insert(unanswered.end(), e.questions.begin(), e.questions.end());
       }
     });
-    next = fmt::format("lgabench select --suite {} --score --answers cassette:{}", suite, a.cassette.string());
+    next =
+        shell_line({"lgabench", "select", "--suite", suite, "--score", "--answers", "cassette:" + a.cassette.string()});
   }
   for (const std::string& question : unanswered) to_stderr("no answer: {}\n", one_line(question));
   if (!unanswered.empty())

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
+#include <regex>
 #include <set>
 #include <string_view>
 
@@ -45,14 +45,14 @@ Words run_words() {
 
 constexpr double stops_before_s = 120, shortest_s = 300;
 
-// Seconds of "HH:MM:SS" or "D-HH:MM:SS".
+// Seconds of "HH:MM:SS" or "D-HH:MM:SS", as Slurm reads them.
 double seconds_of(const std::string& time) {
-  int days = 0, hours = 0, minutes = 0, seconds = 0, end = 0;
-  const auto size = static_cast<int>(time.size());
-  if ((std::sscanf(time.c_str(), "%d-%d:%d:%d%n", &days, &hours, &minutes, &seconds, &end) != 4 || end != size) &&
-      (days = 0, std::sscanf(time.c_str(), "%d:%d:%d%n", &hours, &minutes, &seconds, &end) != 3 || end != size))
+  static const std::regex form("(?:(\\d{1,3})-)?(\\d{1,3}):([0-5]\\d):([0-5]\\d)");
+  std::smatch parts;
+  if (!std::regex_match(time, parts, form))
     throw InputError(fmt::format("--time {}: expected HH:MM:SS or D-HH:MM:SS", time));
-  return ((days * 24. + hours) * 60 + minutes) * 60 + seconds;
+  const auto part = [&parts](int i) { return parts[i].matched ? std::stod(parts[i]) : 0; };
+  return ((part(1) * 24 + part(2)) * 60 + part(3)) * 60 + part(4);
 }
 
 // What cells took in a run that was played, say a smoke run on one of the cluster's machines.

@@ -106,7 +106,7 @@ void add_demos(CLI::App& app, int&) {
               "How objects are placed: one of `lgabench list layouts --of SCENARIO` (default: the first)",
               one_of("layout", installed_layouts()));
   verb.option("--n N", a->n, "Number of demonstrations", CLI::Range(1, 1'000'000), with_default);
-  verb.option("--seed N", a->seed, "Training seed", with_default);
+  verb.option("--seed N", a->seed, "Training seed", a_seed(), with_default);
   verb.option("--noisy N", a->noisy, "DART: number of noisy rollouts per demonstration", CLI::Range(0, 1000),
               with_default);
   verb.option("--noise SIGMA", a->noise,

@@ -33,9 +33,14 @@ std::string unknown_option(const CLI::App& verb, const std::vector<std::string>&
 // What a check of CLI11's says of a value, as all other errors say it. Of a word without an option its name says
 // nothing.
 std::string of_a_value(const CLI::App& verb, const std::string& what) {
-  static const std::regex range("Value (\\S+) not in range (\\S+) to (\\S+)$"), none("\\d+ required (\\S+) missing$");
-  const std::string text = std::regex_replace(
-      std::regex_replace(what, range, "expected a number from $2 to $3, got $1"), none, "expected $1 after it");
+  static const std::pair<std::regex, const char*> words[] = {
+      {std::regex("Value (\\S+) not in range (\\S+) to (\\S+)$"), "expected a number from $2 to $3, got $1"},
+      {std::regex("\\d+ required (\\S+) missing$"), "expected $1 after it"},
+      {std::regex("^Could not convert: (\\S+) = (.*)$"), "$1: expected no value, got $2"},
+      {std::regex("At Most 1 required but received (\\d+)$"), "expected it once, got it $1 times"},
+      {std::regex("At (?:Most|least) (\\d+) required but received (\\d+)$"), "expected $1 values, got $2"}};
+  std::string text = what;
+  for (const auto& [said, words_of_ours] : words) text = std::regex_replace(text, said, words_of_ours);
   const std::size_t colon = text.find(": ");
   const CLI::Option* option = colon == text.npos ? nullptr : verb.get_option_no_throw(text.substr(0, colon));
   return option && option->get_positional() ? verb.get_name() + text.substr(colon) : text;
@@ -53,10 +58,10 @@ std::string explained(const CLI::App& app, const CLI::ParseError& e) {
   if (const std::string unknown = unknown_option(verb, words); !unknown.empty())
     return fmt::format("{}; see {} --help", unknown, name);
   if (missing) {
-    const std::string what = e.what();
-    const CLI::Option* option = verb.get_option_no_throw(what.substr(0, what.find(' ')));
+    const std::string what = e.what(), missed = what.substr(0, what.find(' '));
+    const CLI::Option* option = verb.get_option_no_throw(missed);
     if (!option) return what;
-    return fmt::format("{} is missing; usage: {}", option->get_positional() ? option->get_type_name() : what,
+    return fmt::format("{} is missing; usage: {}", option->get_positional() ? option->get_type_name() : missed,
                        usage_line(verb, name));
   }
   if (&verb != &app) return fmt::format("\"{}\" is a word too many; usage: {}", words.front(), usage_line(verb, name));
@@ -87,6 +92,7 @@ int dispatch(CLI::App& app, int argc, char** argv, const int& exit) {
   ::signal(SIGXFSZ, SIG_IGN);  // a file over the limit (ulimit -f) is an error, not the end
   try {
     try {
+      expect_no_gaps(app, {argv + 1, argv + argc});
       app.parse(argc, argv);
       if (app.get_subcommands().empty()) throw CLI::CallForHelp();
     } catch (const CLI::CallForVersion& e) {

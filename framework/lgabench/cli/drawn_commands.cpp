@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 
+#include <lgabench/cli/own_names.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
@@ -21,6 +22,22 @@ struct DrawArguments {
   bool hints = false;
 };
 
+// What to do with the suite that was written. A shipped seed makes shipped scenarios again, which two files cannot be.
+void print_next(const fs::path& suite, const std::string& first_scenario, bool of_words) {
+  to_stdout("{}\n\n", suite.string());
+  const std::string file = path_word(suite);
+  if (!scenario_file(first_scenario).empty())
+    to_stdout("lgabench has these scenarios already, such as {}: another --seed draws some that can be played\n",
+              first_scenario);
+  else if (of_words)
+    to_stdout(
+        "Without a policy:  lgabench select --suite {} --score --answers none\nWith one:          lgabench run {} "
+        "--answers none\n",
+        file, file);
+  else
+    to_stdout("lgabench run {} --answers none\n", file);
+}
+
 // In scenarios of so many.
 void draw_persons(const DrawArguments& a) {
   constexpr int in_scenario = 25;
@@ -36,13 +53,14 @@ void draw_persons(const DrawArguments& a) {
   }
   const fs::path file = a.out / (suite + ".json");
   write_file(file, drawn::readable(drawn::suite_of_persons(suite, ids, a.hints)));
-  to_stdout("{}\n\nlgabench run {} --answers none\n", file.string(), file.string());
+  print_next(file, ids.front(), false);
 }
 
 void draw(const DrawArguments& a) {
   const std::string suite = fmt::format("drawn_{}", a.request.seed);
   if (std::error_code error; fs::exists(a.out, error) && !fs::is_empty(a.out, error))
     throw InputError(fmt::format("--out {}: expected a new or an empty directory", a.out.string()));
+  expect_scenario_path(a.out);
   if (a.persons > 0) return draw_persons(a);
   const drawn::Lexicon lexicon = drawn::load_lexicon(a.lexicon);
   CountedProgress progress("commands drawn:", a.request.commands);
@@ -56,10 +74,7 @@ void draw(const DrawArguments& a) {
     write_file(a.out / (command.id + ".json"), drawn::readable(drawn::scenario_of(command, lexicon.space)));
   const fs::path file = a.out / (suite + ".json");
   write_file(file, drawn::readable(drawn::suite_of(suite, a.request, commands)));
-  to_stdout(
-      "{}\n\nWithout a policy:  lgabench select --suite {} --score --answers none\nWith one:          lgabench run {} "
-      "--answers none\n",
-      file.string(), file.string(), file.string());
+  print_next(file, commands.front().id, true);
 }
 
 }  // namespace
@@ -67,7 +82,8 @@ void draw(const DrawArguments& a) {
 void add_drawn_commands(CLI::App& app, int& exit) {
   auto a = std::make_shared<DrawArguments>();
   Verb verb(app, "commands", "Draw new commands with their meanings and scenes, as a suite");
-  verb.option("--seed SEED", a->request.seed, "Seed of the draw; the same seed gives the same commands", required);
+  verb.option("--seed SEED", a->request.seed, "Seed of the draw; the same seed gives the same commands", required,
+              a_seed());
   verb.option("--n N", a->request.commands, "Number of commands, from eight families in turn", CLI::Range(1, 100000),
               with_default);
   verb.option("--parts P", a->request.parts, "Number of descriptions in a compound command; more are harder",

@@ -37,6 +37,16 @@ std::string entry(const std::string& name, const std::string& text) {
   return wrapped(line + text, text_column) + "\n";
 }
 
+// Where a line goes on in the next one: below its second column where it has two, further in than an example.
+std::size_t hanging(std::string_view line, std::size_t indent) {
+  constexpr std::size_t widest_first_column = 30;
+  const std::size_t begin = line.find_first_not_of(' ');
+  if (begin == line.npos || begin == 0) return indent;
+  if (begin >= text_column) return begin;
+  const std::size_t second = line.find_first_not_of(' ', line.find("  ", begin));
+  return second <= widest_first_column ? second : begin + 4;
+}
+
 // The group of that title: a new one where there is none yet.
 template <class Group>
 Group& titled(std::vector<Group>& groups, const std::string& title) {
@@ -96,6 +106,14 @@ void Verb::arrange(CLI::Option& option, const std::string& words) const {
   const std::string takes = space == words.npos ? words : words.substr(space + 1);
   option.type_name(takes);
   if (takes.find(',') != takes.npos) option.delimiter(',');
+  if (takes.find(",...") == takes.npos) return;
+  option.check(CLI::Validator(
+      [&option](const std::string& value) {
+        const std::vector<std::string>& all = option.results();
+        const bool once = std::count(all.begin(), all.end(), value) == 1;
+        return once ? std::string() : fmt::format("expected each value once, got {} twice", value);
+      },
+      ""));
 }
 
 void Verb::add(CLI::Option& option, Mark mark) {
@@ -103,6 +121,24 @@ void Verb::add(CLI::Option& option, Mark mark) {
   if (mark == required) option.required();
   if (mark == repeatable) option.allow_extra_args(false);
   if (mark == rare) rare_.insert(option.get_name());
+}
+
+void expect_no_gaps(const CLI::App& app, const std::vector<std::string>& words) {
+  const std::vector<const CLI::App*> verbs =
+      app.get_subcommands([&words](const CLI::App* one) { return !words.empty() && one->get_name() == words.front(); });
+  const CLI::Option* option = nullptr;
+  for (std::size_t i = 1; !verbs.empty() && i < words.size(); ++i) {
+    std::string value = words[i];
+    if (value.rfind("--", 0) == 0) {
+      const std::size_t equals = value.find('=');
+      option = verbs.front()->get_option_no_throw(value.substr(0, equals));
+      if (equals == value.npos) continue;
+      value.erase(0, equals + 1);
+    }
+    if (!option || option->get_delimiter() != ',') continue;
+    if (("," + value + ",").find(",,") != value.npos)
+      throw CLI::ValidationError(option->get_name(), fmt::format("expected a value between commas, got {}", value));
+  }
 }
 
 void expect_options_of(const CLI::App& verb, const std::string& action, const std::vector<std::string>& actions) {
@@ -163,6 +199,7 @@ std::string wrapped(std::string_view text, std::size_t indent) {
   while (true) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, end);
+    const std::size_t in = hanging(line, indent);
     std::size_t room = widest;
     while (line.size() > room) {
       std::size_t cut = line.rfind(' ', room);
@@ -170,8 +207,8 @@ std::string wrapped(std::string_view text, std::size_t indent) {
       out += line.substr(0, cut);
       line.remove_prefix(std::min(cut + 1, line.size()));
       if (line.empty()) break;
-      out += "\n" + std::string(indent, ' ');
-      room = widest - indent;
+      out += "\n" + std::string(in, ' ');
+      room = widest - in;
     }
     out += line;
     if (end == text.size()) return out;

@@ -6,8 +6,11 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
+
+#include <lgabench/cli/numbers.hpp>
 
 namespace lgabench::cli {
 
@@ -49,6 +52,8 @@ class Verb {
     CLI::Option* const option = declare(words.substr(0, words.find(' ')), value, help);
     arrange(*option, words);
     (add(*option, more), ...);
+    using Number = typename number_in<T>::type;
+    if constexpr (!std::is_void_v<Number>) option->check(CLI::Validator(not_a_number<Number>, ""));
     return option;
   }
   /// Has these be rare, and no others.
@@ -78,6 +83,10 @@ class Verb {
   std::set<std::string> rare_;
 };
 
+/// Of the command line's words behind the program. @throws CLI::ValidationError for a list such as "a,,b", whose empty
+/// item CLI11 would drop.
+void expect_no_gaps(const CLI::App& app, const std::vector<std::string>& words);
+
 /// Options of a command with several actions whose help begins with some of these ("build, check: documents that ...")
 /// belong to them alone. @throws InputError for one that was given beside another `action`.
 void expect_options_of(const CLI::App& verb, const std::string& action, const std::vector<std::string>& actions);
@@ -95,7 +104,8 @@ std::vector<CommandGroup> command_groups(const CLI::App& app);
 /// "lgabench run [OPTIONS] SUITE", where `name` is "lgabench run".
 std::string usage_line(const CLI::App& app, const std::string& name);
 
-/// The text in lines of at most 100 columns; what goes on in another line is `indent` spaces in.
+/// The text in lines of at most 100 columns; what goes on in another line is `indent` spaces in, or as far as the
+/// line's second column.
 std::string wrapped(std::string_view text, std::size_t indent);
 
 /// What writes --help of an app and of the commands that are added to it later.

@@ -9,8 +9,10 @@
 
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/outcome.hpp>
+#include <lgabench/cli/own_names.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/colour.hpp>
+#include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/host/python_method.hpp>
 #include <lgabench/leaderboard/add.hpp>
@@ -47,7 +49,7 @@ int add(const LeaderboardArguments& a) {
   if (print_all(added.refused, "refused: ") != ok) return regression;
   for (const std::string& entry : added.entries) to_stdout("added {}\n", entry);
   for (const std::string& entry : added.evidence) to_stdout("evidence added to {}\n", entry);
-  to_stderr("Next: lgabench leaderboard build --board {}\n", a.board.string());
+  to_stderr("Next: lgabench leaderboard build --board {}\n", path_word(a.board));
   return ok;
 }
 
@@ -130,7 +132,8 @@ int verify(LeaderboardArguments a) {
         !a.verify.fresh && line->at("cells").size() < enough)
       to_stderr("Too few cells to count: nobody vouches for a replay of fewer than {} (--cells {})\n", enough, enough);
     else
-      to_stderr("To make it count: lgabench leaderboard vouch {} {}\n", entry.id(), entry.verifications.size() + 1);
+      to_stderr("To make it count: lgabench leaderboard vouch {} {} --board {}\n", shell_line({entry.id()}),
+                entry.verifications.size() + 1, path_word(a.board));
     differs = differs || !passed;
   }
   if (verified + unverified == 0)
@@ -285,7 +288,8 @@ void add_leaderboard(CLI::App& app, int& exit) {
                             CLI::Range(1, 1000000), with_default);
   verb.option("--fresh", a->verify.fresh, "verify: play on new test scenes, and compare success")->excludes(cells);
   verb.option("--by NAME", a->verify.by, "verify, supersede: your name, as the one who computes the cells");
-  verb.option("--jobs N", a->jobs, "verify, scenes: cells to compute at once (default: one for each core that the job has)",
+  verb.option("--jobs N", a->jobs,
+              "verify, scenes: cells to compute at once (default: one for each core that the job has)",
               CLI::Range(1, 4096));
   verb.option("--timeout SECONDS", a->verify.pool.timeout_s, "verify, scenes: seconds after which a cell is stopped",
               within(1, 1e7), with_default);

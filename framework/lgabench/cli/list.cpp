@@ -106,7 +106,7 @@ void print_list(const Json& all, const std::string& kind, bool is_short) {
   for (const std::string section : sections) {
     if (!kind.empty() && section != (kind == "rows" ? "reference rows" : kind)) continue;
     to_stdout("{}\n", section);
-    if (section == "scenarios" && !is_short) {
+    if (section == "scenarios" && kind.empty()) {
       to_stdout("  {}: `lgabench list scenarios --short` has their commands\n", all[section].size());
       continue;
     }
@@ -228,8 +228,8 @@ void add_list(CLI::App& app, int& exit) {
       "Examples\n  lgabench list --short\n  lgabench list suites --short\n  lgabench list layouts --of mobile\n"
       "  lgabench list --plugin-path my/build");
   verb->callback([arguments, &exit] {
-    const Json all =
-        listing(plugins_at(arguments->directories, arguments->python), arguments->json || arguments->is_short);
+    const Json all = listing(plugins_at(arguments->directories, arguments->python),
+                             arguments->json || (arguments->is_short && arguments->kind == "scenarios"));
     if (arguments->kind.empty() && !arguments->of.empty()) throw InputError("--of: expected a KIND with it");
     const std::string& kind = arguments->kind;
     const bool is_section = kind.empty() || kind == "rows" ||

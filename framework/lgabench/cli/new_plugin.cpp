@@ -1,17 +1,23 @@
 // lgabench new-plugin NAME: a working project of a plugin, outside lgabench's tree.
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <array>
 #include <cctype>
 #include <map>
 #include <memory>
 
+#include <lgabench/abstraction/reading.hpp>
+#include <lgabench/cli/own_names.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/filled.hpp>
+#include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
+#include <lgabench/plugin/loader.hpp>
+#include <lgabench/record/reference_rows.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -30,6 +36,19 @@ const std::map<std::string, Library> libraries{
     {"opencv", {"find_package(OpenCV REQUIRED COMPONENTS core imgproc)\n", " opencv_core opencv_imgproc"}},
     {"torch", {"find_package(Torch REQUIRED)\n", " ${TORCH_LIBRARIES}"}}};
 
+// Classes that a template names, and words of Python that look like one.
+const std::array<std::string, 21> other_classes{"Action",       "CloningMethod",
+                                                "Colour",       "Command",
+                                                "FeatureSet",   "FeatureSpace",
+                                                "Json",         "Method",
+                                                "None",         "False",
+                                                "True",         "Needs",
+                                                "Observation",  "ObservationPerturbation",
+                                                "Perceiver",    "Policy",
+                                                "PolicyInputs", "RandomStream",
+                                                "Selection",    "Services",
+                                                "Sum"};
+
 // my_method -> MyMethod
 std::string class_name(const std::string& name) {
   std::string text;
@@ -38,19 +57,38 @@ std::string class_name(const std::string& name) {
     if (c != '_') text += upper ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
     upper = c == '_';
   }
-  return text;
+  return contains(other_classes, text) ? text + "Plugin" : text;
 }
 
-void expect_name(const std::string& name) {
-  const auto allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
-  if (name.empty() || name.size() > 63 || name[0] < 'a' || name[0] > 'z' ||
-      !std::all_of(name.begin(), name.end(), allowed))
-    throw InputError(fmt::format(
-        "new-plugin: \"{}\": expected at most 63 lower-case letters, digits and underscores, a letter first", name));
+// Names that CMake keeps for its own targets.
+const std::array<std::string, 10> cmake_targets{"all",     "clean",          "edit_cache", "help",          "install",
+                                                "package", "package_source", "preinstall", "rebuild_cache", "test"};
+
+// Another thing of that name would be found in place of the plugin, or refuse it.
+void expect_free(const NewPluginArguments& a) {
+  const std::string kind = a.kind == "python" ? "method" : a.kind;
+  const Catalogue catalogue = scan_plugins(plugin_directories());
+  std::vector<std::string> taken;
+  for (const PluginInfo& plugin : catalogue.plugins)
+    if (plugin.kind == kind) taken.push_back(plugin.id);
+  if (kind == "method")
+    for (const ReferenceRow& row : lgabench::reference_rows()) taken.push_back(row.id);
+  if (kind == "perturbation")
+    for (const std::string& axis : perturbation_ids()) taken.push_back(axis);
+  if (kind == "perceiver") {
+    taken.insert(taken.end(), names_read().begin(), names_read().end());
+    taken.emplace_back(Reading::simulator);
+  }
+  if (contains(taken, a.name))
+    throw InputError(fmt::format("new-plugin: expected another id than {}, which a {} that lgabench finds has", a.name,
+                                 kind == "perturbation" ? "perturbation axis" : kind));
+  if (contains(cmake_targets, a.name))
+    throw InputError(fmt::format("new-plugin: expected another id than {}, which CMake has a target of", a.name));
 }
 
 void new_plugin(const NewPluginArguments& a) {
-  expect_name(a.name);
+  expect_plain_name("new-plugin", a.name);
+  expect_free(a);
   if (a.language == "python" && a.kind == "engine")
     throw InputError(
         "new-plugin: --language python: expected a method, a perturbation or a perceiver, an engine is in C++");
@@ -64,14 +102,15 @@ void new_plugin(const NewPluginArguments& a) {
   const std::string version = LGABENCH_VERSION;
   const std::string number = version.substr(0, version.find('-'));  // as CMake compares it
   const auto write = [&](const fs::path& from, const std::string& to) {
-    write_file(directory / to, filled(read_file(templates / from), {{"@NAME@", a.name},
-                                                                    {"@CLASS@", class_name(a.name)},
-                                                                    {"@KIND@", a.kind},
-                                                                    {"@FOUND@", libraries.at(a.with).found},
-                                                                    {"@LINKED@", libraries.at(a.with).linked},
-                                                                    {"@VERSION@", version},
-                                                                    {"@NUMBER@", number},
-                                                                    {"@PREFIX@", prefix.string()}}));
+    write_file(directory / to, filled(read_file(templates / from),
+                                      {{"@NAME@", a.name},
+                                       {"@CLASS@", class_name(a.name)},
+                                       {"@KIND@", a.kind},
+                                       {"@FOUND@", libraries.at(a.with).found},
+                                       {"@LINKED@", libraries.at(a.with).linked},
+                                       {"@VERSION@", version},
+                                       {"@NUMBER@", number},
+                                       {"@PREFIX@", to == "README.md" ? path_word(prefix) : prefix.string()}}));
     to_stdout("{}\n", (directory / to).string());
   };
   const bool perceives = a.kind == "perturbation" || a.kind == "perceiver";

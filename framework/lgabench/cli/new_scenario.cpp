@@ -7,6 +7,7 @@
 #include <optional>
 
 #include <lgabench/cli/new_scenario.hpp>
+#include <lgabench/cli/own_names.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
@@ -38,7 +39,7 @@ void ask(const char* verb, Words& words, const char* flag, const char* question,
     std::getline(std::cin, line);
   }
   if (line.empty()) throw InputError(fmt::format("{}: expected {}", verb, flag));
-  words = several ? CLI::detail::split(line, ',') : Words{line};
+  words = several ? items_of(line, ',') : Words{line};
   for (std::string& word : words) CLI::detail::trim(word);
 }
 
@@ -58,7 +59,7 @@ Json set_of(const Words& types, const Words& textures) {
 // Of TYPE,.../TEXTURE,...; without a slash of any texture.
 Json set_of(const std::string& text) {
   const std::size_t slash = text.find('/');
-  const auto names = [](const std::string& list) { return CLI::detail::split(list, ','); };
+  const auto names = [](const std::string& list) { return items_of(list, ','); };
   return set_of(names(text.substr(0, slash)), slash == text.npos ? Words{"ALL"} : names(text.substr(slash + 1)));
 }
 
@@ -81,11 +82,11 @@ Json meaning_of(const NewScenario& a) {
 
 Json range_of(const std::string& text) {
   const std::size_t colon = text.find(':');
-  int fewest = 0, most = 0;
-  if (!CLI::detail::lexical_cast(text.substr(0, colon), fewest) ||
-      !CLI::detail::lexical_cast(colon == std::string::npos ? text : text.substr(colon + 1), most))
+  const auto fewest = number_of<int>(text.substr(0, colon)),
+             most = number_of<int>(colon == std::string::npos ? text : text.substr(colon + 1));
+  if (!fewest || !most)
     throw InputError(fmt::format("--distractors: expected FEWEST:MOST, such as 1:2, got \"{}\"", text));
-  return {fewest, most};
+  return {*fewest, *most};
 }
 
 Json scenario_json(const NewScenario& a) {
@@ -103,7 +104,10 @@ Json scenario_json(const NewScenario& a) {
   const Json distractors = range_of(a.distractors);
   Json tests = Json::array({{{"arm", "test"}, {"distractors", distractors}}});
   if (a.hard) tests.push_back({{"arm", "hard"}, {"distractors", distractors}, {"hard", true}});
-  if (a.near_miss) tests.push_back({{"arm", "near_miss"}, {"distractors", distractors}, {"near_miss", true}});
+  if (a.near_miss)
+    tests.push_back({{"arm", "near_miss"},
+                     {"distractors", a.near_miss_distractors.empty() ? distractors : range_of(a.near_miss_distractors)},
+                     {"near_miss", true}});
   if (!a.unseen.empty()) tests.push_back({{"arm", "unseen"}, {"distractors", distractors}, {"unseen", true}});
   Json json{{"id", a.name},         {"environment", environment.id()},
             {"task", a.task},       {"feature_space", a.space},
@@ -118,18 +122,20 @@ Json scenario_json(const NewScenario& a) {
 }
 
 void new_scenario(NewScenarioArguments a) {
+  expect_plain_name("new-scenario", a.name);
   const fs::path file = (a.directory / (a.name + ".json")).lexically_normal();
   if (std::error_code error; fs::exists(file, error))
     throw InputError(fmt::format("{}: exists already; nothing was written", file.string()));
+  expect_free_scenario("new-scenario", a.name);
+  expect_scenario_path(a.directory);
   const Json json = new_scenario_json(a, "new-scenario", file.string());
   write_file(file, json.dump(1) + "\n");
-  const std::string path = fs::weakly_canonical(a.directory).string();
   to_stdout("{}\n\nTo sample it, let the oracle play it, and draw it:\n  lgabench check-scenario {}\n", file.string(),
-            file.string());
+            path_word(file));
   to_stdout(
       "To run it:\n  lgabench run q1 --preset smoke --scenarios {} --scenario-path {} --answers none --methods "
       "human,gcbc_seg\n",
-      a.name, path);
+      a.name, path_word(fs::weakly_canonical(a.directory)));
   Words commands = a.commands;
   commands.insert(commands.end(), a.unseen.begin(), a.unseen.end());
   if (const std::string missing = missing_encoder(commands); !missing.empty()) to_stdout("\nFirst: {}\n", missing);
@@ -159,7 +165,8 @@ void add_scenario_options(Verb& verb, NewScenario& a) {
   verb.option("--which RULE", a.rule,
               "Which one of several objects it means: leftmost, rightmost, left_of, right_of, nearest_to, "
               "farthest_from or first_in");
-  verb.option("--of SET", a.of, "left_of, right_of, nearest_to, farthest_from: the other object, TYPE,.../TEXTURE,...");
+  verb.option("--relative-to SET", a.of,
+              "left_of, right_of, nearest_to, farthest_from: the other object, TYPE,.../TEXTURE,...");
   verb.option("--order NAME,...", a.order, "first_in: object types or textures; the first of them wins", repeatable);
   verb.option("--words SET", a.words, "The set that the words alone mean, if the person takes less of it");
   verb.option("--other-types TYPE,...", a.other_types, "Object types that a sweep must not touch", repeatable);

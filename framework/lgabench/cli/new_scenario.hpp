@@ -12,7 +12,7 @@ using Words = std::vector<std::string>;
 
 /// A tabletop scenario; texts are as on the command line.
 struct NewScenario {
-  std::string name, task = "pick_and_place", space = "tabletop", distractors = "1:2";
+  std::string name, task = "pick_and_place", space = "tabletop", distractors = "1:2", near_miss_distractors;
   Words commands, unseen, types, textures{"ALL"}, other_types, other_textures{"ALL"};
   Words also, careless, undecided, order;  // all but the last: sets
   std::string rule, of, words;

@@ -49,8 +49,9 @@ std::string roff_options(const CLI::App& app) {
   return page;
 }
 
-// Lines as they are; one at the left margin before an indented one is a title.
-std::string roff_footer(const std::string& footer, const char* heading) {
+// Lines as --help has them; one at the left margin before an indented one is a title.
+std::string roff_footer(const std::string& text, const char* heading) {
+  const std::string footer = wrapped(text, 2);
   std::string page = ".PP\n.nf\n";
   for (std::size_t at = 0; at < footer.size();) {
     const std::size_t end = std::min(footer.find('\n', at), footer.size());

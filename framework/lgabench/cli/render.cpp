@@ -113,7 +113,7 @@ void add_render(CLI::App& app, int&) {
   verb.option("--truth released|printed", arguments->truth,
               "Which true distributions to use where released and printed ones differ",
               one_of("truth", {"released", "printed"}), with_default);
-  verb.option("--seed N", arguments->seed, "Seed of the scenes", with_default);
+  verb.option("--seed N", arguments->seed, "Seed of the scenes", a_seed(), with_default);
   add_scenario_path(verb);
   verb->footer(
       "Draws the scene before the action; the mask is that of the command's true Selection.\nExample: lgabench render "

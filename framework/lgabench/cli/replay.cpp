@@ -69,9 +69,8 @@ std::optional<Selection> selection_of(const fs::path& directory, const Scenario&
 // KEY/ARM/INDEX, or KEY/INDEX of the first arm.
 Recorded recorded(const fs::path& run, const std::string& named) {
   const std::size_t first = named.find('/'), last = named.rfind('/');
-  int index = 0;
-  if (first == std::string::npos || !CLI::detail::lexical_cast(named.substr(last + 1), index))
-    throw InputError(fmt::format("replay: expected KEY/ARM/INDEX or KEY/INDEX, got \"{}\"", named));
+  const std::optional<int> index = first == std::string::npos ? std::nullopt : number_of<int>(named.substr(last + 1));
+  if (!index) throw InputError(fmt::format("replay: expected KEY/ARM/INDEX or KEY/INDEX, got \"{}\"", named));
   const fs::path directory = cell_of(run, named.substr(0, first));
   const Cell cell = recorded_cell(directory);
   const Scenario scenario =
@@ -81,12 +80,12 @@ Recorded recorded(const fs::path& run, const std::string& named) {
   const std::string file = (directory / cell_file::episodes).string();
   for (const Json& line : parse_json_lines(read_file(file, Links::refused), file)) {
     const Episode episode = read_episode(JsonReader(line, file));
-    if (episode.arm != arm || episode.index != index) continue;
+    if (episode.arm != arm || episode.index != *index) continue;
     if (episode.action.empty())
       throw InputError(fmt::format("replay: {} ended without an action: {}", named, episode.failure));
     return {cell, scenario, episode, selection_of(directory, scenario, episode.given())};
   }
-  throw InputError(fmt::format("replay: {} has no episode {} in arm {}", directory.string(), index, arm));
+  throw InputError(fmt::format("replay: {} has no episode {} in arm {}", directory.string(), *index, arm));
 }
 
 void draw(const EnvironmentType& environment, const Tool& tool, int zoom, Picture& picture) {

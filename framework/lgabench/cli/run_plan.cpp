@@ -80,10 +80,13 @@ std::vector<DesignAxis> played_axes(const Words& words) {
     const std::size_t colon = word.find(':');
     DesignAxis& axis = all.emplace_back(DesignAxis{word.substr(0, colon), {}});
     if (colon == std::string::npos) continue;
-    for (const std::string& level : CLI::detail::split(word.substr(colon + 1), '+'))
-      if (!CLI::detail::lexical_cast(level, axis.levels.emplace_back()))
-        throw InputError(
-            fmt::format("--axes: expected AXIS or AXIS:LEVEL+LEVEL, such as camera_turn:1+4; got \"{}\"", word));
+    for (const std::string& text : items_of(word.substr(colon + 1), '+')) {
+      const std::optional<int> level = number_of<int>(text);
+      if (!level || contains(axis.levels, *level))
+        throw InputError(fmt::format(
+            "--axes: expected AXIS or AXIS:LEVEL+LEVEL, each level once, such as camera_turn:1+4; got \"{}\"", word));
+      axis.levels.push_back(*level);
+    }
   }
   return all;
 }
@@ -315,7 +318,7 @@ void add_run_options(Verb& verb, RunArguments& a) {
   verb.option("--scene-seed N", a.scene_seed,
               "Draw other test scenes, from this seed; demonstrations follow --seeds. Not for presets of the "
               "leaderboard",
-              rare);
+              a_seed(), rare);
   verb.option("--set M.OPTION=VALUE", a.settings,
               "Set METHOD.OPTION, or *.OPTION for every method that has the option; this overrides the preset's value, "
               "not a row's own; can be repeated");

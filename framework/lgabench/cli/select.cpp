@@ -262,7 +262,9 @@ void add_select(CLI::App& app, int&) {
               one_of("truth", {"released", "printed"}), with_default);
   verb.option(fmt::format("--task {}", fmt::join(installed_task_ids(), "|")), arguments->task,
               "The task, for a command in quotes", one_of("task", installed_task_ids()), with_default);
-  verb.option("--space SPACE", arguments->space, "The feature space, for a command in quotes", with_default);
+  std::error_code none_to_list;
+  verb.option("--space SPACE", arguments->space, "The feature space, for a command in quotes",
+              one_of("feature space", json_names(data_directory() / "spaces", none_to_list)), with_default);
   add_scenario_path(verb);
   auto* score = verb.option("--score", arguments->score,
                             "With --suite: score, without a policy, how exactly the answers keep the meant objects in "
@@ -305,12 +307,13 @@ void add_select(CLI::App& app, int&) {
   verb->footer(
       "With --answers openai, select asks the server at OPENAI_BASE_URL (any with OpenAI's API) one question for each "
       "object type and texture; OPENAI_API_KEY holds the key. Run an interrupted command again, and it continues from "
-      "the cassette.\nExample: lgabench select "
-      "red_heart\nA table of a model's answers: lgabench select --suite words --score\nWhat is read from pictures: "
-      "lgabench select --suite pictures --score --names read,read_robust\nTo record for lgabench run "
-      "--answers cassette:M.jsonl: lgabench select --suite q1 --answers openai "
-      "--model M --cassette M.jsonl\n         lgabench select \"Bring me a fruit.\" --space household --answers openai "
-      "--model M --cassette M.jsonl");
+      "the cassette, which `lgabench run --answers cassette:M.jsonl` reads.\n\n"
+      "Examples\n"
+      "  lgabench select red_heart                              the recorded answers about a scenario\n"
+      "  lgabench select --suite words --score                  how exact answers are, as a table\n"
+      "  lgabench select --suite pictures --score --names read,read_robust       what is read from pictures\n"
+      "  lgabench select --suite q1 --answers openai --model M --cassette M.jsonl      asks a model\n"
+      "  lgabench select \"Bring a fruit.\" --space household --answers openai --model M --cassette M.jsonl");
   verb->callback([arguments] {
     if (arguments->command.empty() && arguments->suite.empty())
       throw InputError("select: expected a command, a scenario's id, or --suite");

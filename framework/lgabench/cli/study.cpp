@@ -10,6 +10,7 @@
 #include <thread>
 
 #include <lgabench/cli/help.hpp>
+#include <lgabench/cli/own_names.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/filled.hpp>
 #include <lgabench/core/json.hpp>
@@ -52,7 +53,7 @@ int new_study(const StudyArguments& a) {
   if (a.protocol == "disputed") drawn.emplace_back("@PAIRS@", study::disputed_items(seed).dump(1));
   const std::string protocol = filled(read_file(shipped), drawn);
   const Json json = parse_json(protocol, shipped.string());
-  const std::vector<std::pair<std::string, std::string>> values{{"@DIR@", a.path.string()},
+  const std::vector<std::pair<std::string, std::string>> values{{"@DIR@", path_word(a.path)},
                                                                 {"@PEOPLE@", json.at("planned_people").dump()},
                                                                 {"@MINUTES@", json.at("minutes").dump()}};
   write_file(a.path / "protocol.json", protocol);
@@ -60,9 +61,9 @@ int new_study(const StudyArguments& a) {
   write_file(a.path / "README.md",
              filled(read_file(templates / (a.protocol == "disputed" ? "disputed.md.in" : "README.md.in")), values));
   for (const char* file : {"protocol.json", "consent.txt", "README.md"}) to_stdout("{}\n", (a.path / file).string());
-  to_stdout("\nTo see what is left to fill in:\n  lgabench study check {}\n", a.path.string());
+  to_stdout("\nTo see what is left to fill in:\n  lgabench study check {}\n", path_word(a.path));
   to_stdout("To try it in a browser first:\n  lgabench study serve {} --out {} --rehearsal\n",
-            (a.path / "protocol.json").string(), (a.path / "tried").string());
+            path_word(a.path / "protocol.json"), path_word(a.path / "tried"));
   return ok;
 }
 
@@ -137,9 +138,9 @@ int rehearse(const StudyArguments& a) {
   server.stop();
   serving.join();
   if (failure) std::rethrow_exception(failure);
-  to_stdout("{} simulated people took part. The results:\n  lgabench study report {}\n", a.people, a.out.string());
+  to_stdout("{} simulated people took part. The results:\n  lgabench study report {}\n", a.people, path_word(a.out));
   if (!study.protocol().of_pairs())
-    to_stdout("  lgabench run q1 --humans {} --rehearsal\n", (a.out / "participants").string());
+    to_stdout("  lgabench run q1 --humans {} --rehearsal\n", path_word(a.out / "participants"));
   return ok;
 }
 

@@ -4,8 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -83,6 +86,19 @@ inline CLI::Validator within(double low, double high) {
         return number ? std::string() : fmt::format("expected a number from {} to {}, got {}", low, high, word);
       },
       fmt::format("FLOAT in [{} - {}]", low, high), "");
+}
+
+/// A check for an option: a seed as suites and `run --seeds` take them.
+inline CLI::Validator a_seed() {
+  return CLI::Validator(
+      [](const std::string& word) {
+        using Number = std::int64_t;
+        const std::optional<Number> seed = number_of<Number>(word);
+        return seed && *seed >= 0 ? std::string()
+                                  : fmt::format("expected a whole number from 0 to {}, got {}",
+                                                std::numeric_limits<Number>::max(), word);
+      },
+      "", "");
 }
 
 /// The rows that every run has beside its methods, and what they do: {"id", "summary"} each.

@@ -1,7 +1,12 @@
 #include <lgabench/core/feature_space.hpp>
 
+#include <fmt/format.h>
+
 #include <lgabench/core/contains.hpp>
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/read_space.hpp>
 #include <lgabench/core/shipped.hpp>
+#include <lgabench/core/suggest.hpp>
 
 namespace lgabench {
 namespace {
@@ -29,10 +34,20 @@ FeatureSpace load_feature_space(const std::string& id) {
   static MadeOnce<FeatureSpace> all;
   const fs::path file = data_directory() / "spaces" / (id + ".json");
   return all.of(file.string(), [&] {
+    if (const auto& known = shipped_names("spaces"); !contains(known, id))
+      throw InputError(none_named("feature space", id, known));
     const Json document = read_json(file);
     const JsonReader reader(document, file.string());
     return FeatureSpace{id, reader.at("object_types").strings(), reader.at("textures").strings()};
   });
+}
+
+FeatureSpace read_space(const JsonReader& name) {
+  try {
+    return load_feature_space(name.string());
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("{}: {}: {}", name.file(), name.place(), e.what()));
+  }
 }
 
 bool FeatureSet::contains(const std::string& object_type, const std::string& texture) const {

@@ -9,14 +9,24 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/perturbations.hpp>
+#include <lgabench/core/read_space.hpp>
 #include <lgabench/core/scenario_files.hpp>
 #include <lgabench/core/shipped.hpp>
 #include <lgabench/core/suggest.hpp>
+#include <lgabench/core/terminal.hpp>
 
 namespace lgabench {
 namespace {
 
 constexpr int most_wordings = 99;
+constexpr const char* plain_name = "a name of at most 64 letters, digits, '_', '-' and '.', no '-' first";
+
+bool is_plain(const std::string& name) {
+  const auto plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
+  };
+  return !name.empty() && name.size() <= 64 && name[0] != '-' && std::all_of(name.begin(), name.end(), plain);
+}
 
 // What the environment says of one of the file's words, with the place of that word.
 template <class Find>
@@ -62,6 +72,22 @@ void expect_wordings(const JsonReader& commands, const Scenario& scenario) {
     if (distribution_json(command.truth) != distribution_json(scenario.commands.front().truth))
       all[i].at("truth").fail("the truth of the first command, which this one rewords");
     seen.push_back(command.wording);
+  }
+}
+
+// Words that answers can be recorded for; those that an arm's axis gives may be none. An unseen command is not one that
+// is demonstrated.
+void expect_words(const JsonReader& commands, const Scenario& scenario) {
+  const std::vector<JsonReader> all = commands.elements();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const ScenarioCommand& command = scenario.commands[i];
+    const std::string& words = command.utterance;
+    if (one_line(words) != words || (words.empty() && command.arm.empty()))
+      all[i].at("utterance").fail("words, in a line");
+    const auto demonstrated = [&words](const ScenarioCommand& one) { return one.seen && one.utterance == words; };
+    if (!command.seen && command.arm.empty() &&
+        std::any_of(scenario.commands.begin(), scenario.commands.end(), demonstrated))
+      all[i].at("utterance").fail("other words than those of a command that is demonstrated");
   }
 }
 
@@ -132,11 +158,7 @@ Arm read_arm(const JsonReader& reader, std::vector<std::string> members, const P
   reader.only(members);
   Arm arm;
   arm.id = reader.at("arm").string();
-  const auto plain = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
-  };
-  if (arm.id.empty() || arm.id.size() > 64 || !std::all_of(arm.id.begin(), arm.id.end(), plain))
-    reader.at("arm").fail("a name of letters, digits, '_', '-' and '.'");
+  if (!is_plain(arm.id)) reader.at("arm").fail(plain_name);
   if (arm.id == "train") reader.at("arm").fail("another name than train");
   arm.scenes = read_content();
   if (reader.has("unseen")) arm.unseen = reader.at("unseen").boolean();
@@ -238,8 +260,9 @@ Scenario read_scenario(const Json& json, const std::string& file) {
     replaced.insert(replaced.end(), {"commands", "note"});
     reader.at("printed").only(replaced);
   }
-  s.space = load_feature_space(reader.at("feature_space").string());
+  s.space = read_space(reader.at("feature_space"));
   for (const JsonReader& command : reader.at("commands").elements()) s.commands.push_back(read_command(command, s));
+  expect_words(reader.at("commands"), s);
   expect_wordings(reader.at("commands"), s);
   s.answers_of = reader.has("answers_of") ? reader.at("answers_of").string() : s.id;
   if (reader.has("answers")) read_answers(reader.at("answers"), s);
@@ -327,6 +350,7 @@ Scenario load_scenario(const std::string& id, Truth truth) {
   if (file.empty()) throw InputError(none_named("scenario", id, scenario_ids()));
   const Json json = read_shipped_json(file);
   Scenario s = read_scenario(truth == Truth::printed ? as_printed(json) : json, file.string());
+  if (!is_plain(s.id)) JsonReader(json, file.string()).at("id").fail(plain_name);
   if (s.id != id)
     throw InputError(
         fmt::format("{}: /id: expected \"{}\", as the file is named, got \"{}\"", file.string(), id, s.id));

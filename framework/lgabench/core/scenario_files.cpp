@@ -55,12 +55,20 @@ void add_scenario_path(const fs::path& directory) {
   const fs::path canonical = fs::canonical(directory, error);
   if (error || !fs::is_directory(canonical))
     throw InputError(fmt::format("--scenario-path {}: expected a directory", directory.string()));
+  expect_scenario_path(canonical);
   std::string all = canonical.string();
   for (const fs::path& other : scenario_path()) {
     if (other == canonical) return;
     all.insert(0, other.string() + ":");
   }
   ::setenv(variable, all.c_str(), 1);
+}
+
+void expect_scenario_path(const fs::path& directory) {
+  const std::string path = fs::weakly_canonical(fs::absolute(directory)).string();
+  if (path.find(':') != path.npos)
+    throw InputError(
+        fmt::format("{}: expected a path without a colon, which separates directories in {}", path, variable));
 }
 
 std::map<std::string, fs::path> scenario_files() {

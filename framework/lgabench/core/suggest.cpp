@@ -24,6 +24,14 @@ std::size_t slips(std::string_view a, std::string_view b) {
   return cost.back();
 }
 
+// The length of the longest part that both words have.
+std::size_t shared(std::string_view a, std::string_view b) {
+  std::size_t longest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    while (i + longest < a.size() && b.find(a.substr(i, longest + 1)) != b.npos) ++longest;
+  return longest;
+}
+
 }  // namespace
 
 std::string nearest(std::string_view word, const std::vector<std::string>& known) {
@@ -49,9 +57,24 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& kn
 }
 
 std::string none_named(std::string_view what, std::string_view word, const std::vector<std::string>& known) {
-  const std::string near = suggestion(word, known);
-  return fmt::format("no {} \"{}\"{}", what, word,
-                     near.empty() ? fmt::format(", expected one of: {}", fmt::join(known, ", ")) : near);
+  constexpr std::size_t most = 40, examples = 8;  // of a name; more are no help
+  const std::string begin = fmt::format("no {} \"{}\"", what, word);
+  if (const std::string near = suggestion(word, known); !near.empty()) return begin + near;
+  if (known.size() <= most) return fmt::format("{}, expected one of: {}", begin, fmt::join(known, ", "));
+  std::vector<std::string> similar = known;
+  std::stable_sort(similar.begin(), similar.end(),
+                   [word](const std::string& a, const std::string& b) { return shared(word, a) > shared(word, b); });
+  similar.resize(examples);
+  const bool is_listed = what == "scenario" || what == "arm";  // by a command
+  return fmt::format("{}, expected one of {}, such as: {}{}", begin, known.size(), fmt::join(similar, ", "),
+                     is_listed ? fmt::format(" (lgabench list {}s)", what) : "");
+}
+
+std::string some_of(const std::vector<std::string>& all, std::string_view separator) {
+  constexpr std::size_t most = 40, first = 8;
+  if (all.size() <= most) return fmt::format("{}", fmt::join(all, separator));
+  return fmt::format("{}{}... ({} more)", fmt::join(all.begin(), all.begin() + first, separator), separator,
+                     all.size() - first);
 }
 
 }  // namespace lgabench

@@ -15,7 +15,10 @@ std::string nearest(std::string_view word, const std::vector<std::string>& known
 std::string suggestion(std::string_view word, const std::vector<std::string>& known);
 
 /// "no scenario "hart" (did you mean "heart"?)"; "no scenario "moon", expected one of: heart, letter" where nothing is
-/// near.
+/// near. Of more than 40 it names some that share most letters in a row with the word, and says how to list all.
 std::string none_named(std::string_view what, std::string_view word, const std::vector<std::string>& known);
+
+/// "a, b, c": all, or the first few of many and how many more there are.
+std::string some_of(const std::vector<std::string>& all, std::string_view separator = ", ");
 
 }  // namespace lgabench

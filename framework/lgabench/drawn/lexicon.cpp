@@ -6,6 +6,8 @@
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/meaning.hpp>
+#include <lgabench/core/read_space.hpp>
+#include <lgabench/core/terminal.hpp>
 
 namespace lgabench::drawn {
 namespace {
@@ -52,7 +54,7 @@ Sets read_sets(const JsonReader& entry, const char* members, const Names& space)
 
 std::string read_words(const JsonReader& reader, std::set<std::string>& known) {
   const std::string words = reader.string();
-  if (words.empty()) reader.fail("words");
+  if (words.empty() || words != one_line(words)) reader.fail("words, in a line");
   if (!known.insert(words).second) reader.fail("words that no other entry has");
   return words;
 }
@@ -86,7 +88,7 @@ Lexicon read_lexicon(const Json& json, const std::string& file) {
   const JsonReader reader(json, file);
   reader.only({"space", "note", "names", "classes", "looks", "orders"});
   Lexicon lexicon;
-  lexicon.space = load_feature_space(reader.at("space").string());
+  lexicon.space = read_space(reader.at("space"));
   std::set<std::string> known;
   lexicon.names = read_things(reader.at("names"), lexicon.space, known);
   lexicon.classes = read_things(reader.at("classes"), lexicon.space, known);

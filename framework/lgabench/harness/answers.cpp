@@ -14,6 +14,7 @@
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/suggest.hpp>
 
 namespace lgabench {
 namespace {
@@ -33,7 +34,7 @@ void expect_all_commands(const RecordedAnswers& answers, const std::vector<std::
     throw InputError(fmt::format(
         "--answers {}: expected answers for {}; it has those for: {}. Give --answers cassette:FILE or openai "
         "(docs/language-models.md), or, with methods that ask no language model, --answers {}",
-        answers.source, fmt::join(lacking, ", "), fmt::join(known, " | "), to_string(NoAnswers())));
+        answers.source, some_of(lacking), some_of(known, " | "), to_string(NoAnswers())));
 }
 
 }  // namespace
@@ -164,7 +165,7 @@ void check_forms(const std::vector<Cell>& cells, const Catalogue& catalogue, con
   }
   if (!lacking.empty())
     throw InputError(
-        fmt::format("{}: {} (scenarios that lack this: {})", fmt::join(rows, ", "), reason, fmt::join(lacking, ", ")));
+        fmt::format("{}: {} (scenarios that lack this: {})", fmt::join(rows, ", "), reason, some_of(lacking)));
 }
 
 std::vector<AnswerFile> read_participants(const fs::path& directory, bool rehearsal, std::vector<Participant>& all) {

@@ -155,6 +155,22 @@ void expect_arms(const PlayedArms& played, const SuiteArms& there, const Suite& 
   }
 }
 
+// What a policy is trained on; policy=point is not trained.
+void expect_demonstrations(const Design& design, const std::vector<Competitor>& methods, const Catalogue& catalogue) {
+  if (!contains(design.demonstrations, 0)) return;
+  for (const Competitor& method : methods) {
+    const Json& options = catalogue.find("method", method.acts ? method.acts->id : method.id).options;
+    if (!options.contains("policy") || !options["policy"].value("framework", false)) continue;
+    const Json policy =
+        (method.acts ? method.acts->options : method.options).value("policy", options["policy"]["default"]);
+    if (policy != "point")
+      throw InputError(
+          fmt::format("demonstrations: expected 1 or more for {}, whose policy ({}) is trained on them, "
+                      "got 0; policy=point needs none",
+                      method.name, policy.get<std::string>()));
+  }
+}
+
 // A suite's scenarios may be of several tasks, each with layouts of its own.
 void expect_layouts(const Scenario& scenario, const std::vector<std::string>& layouts) {
   const std::vector<std::string> there = layouts_of(scenario);
@@ -265,6 +281,7 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
                          const Catalogue& catalogue) {
   const std::vector<Competitor> methods = competitors(suite, design, variation.options, catalogue);
   for (const std::string& engine : design.engines) catalogue.find("engine", engine);
+  expect_demonstrations(design, methods, catalogue);
   if (variation.played) expect_arms(*variation.played, arms_of(suite, design), suite);
   if (!variation.participants.empty() && std::none_of(methods.begin(), methods.end(), asks_people))
     throw InputError("--humans: expected a method that asks people, such as human or lga_hill; this run has none");

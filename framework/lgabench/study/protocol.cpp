@@ -9,7 +9,9 @@
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/read_space.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/core/shell.hpp>
 
 namespace lgabench::study {
 namespace {
@@ -83,7 +85,7 @@ Item practice_item(const JsonReader& reader, bool meanings) {
   if (known == tasks.end()) reader.at("task").fail("a task of an installed environment");
   const TaskInfo& task = *known;
   item.command = {item.asked_as, task.id, task.second};
-  item.space = load_feature_space(reader.at("feature_space").string());
+  item.space = read_space(reader.at("feature_space"));
   item.proposal = read_distribution(reader.at("proposal"), item.space, task.second);
   if (!meanings && !item.proposal.target.is_product())
     reader.at("proposal").fail("one set, or \"meanings\": true in the protocol");
@@ -133,7 +135,7 @@ void read_design(const JsonReader& reader, Protocol& protocol) {
   const JsonReader example = reader.at("example");
   example.only({"command", "feature_space", "answer"});
   protocol.example_command = words(example, "command");
-  protocol.example_space = load_feature_space(example.at("feature_space").string());
+  protocol.example_space = read_space(example.at("feature_space"));
   protocol.example = read_distribution(example.at("answer"), protocol.example_space, std::nullopt);
   if (!protocol.example.target.is_product()) example.at("answer").fail("one set");
 }
@@ -144,7 +146,11 @@ void read_rules(const JsonReader& reader, Protocol& protocol) {
   if (exclusions.has("most_controls_failed"))
     protocol.most_controls_failed = static_cast<int>(exclusions.at("most_controls_failed").integer(0, 1000));
   protocol.fewest_trials = static_cast<int>(exclusions.at("fewest_trials").integer(1, 1000));
-  if (exclusions.has("longest_seconds")) protocol.longest_s = exclusions.at("longest_seconds").number();
+  if (exclusions.has("longest_seconds")) {
+    const JsonReader longest = exclusions.at("longest_seconds");
+    protocol.longest_s = longest.number();
+    if (!(protocol.longest_s > 0)) longest.fail("more than 0 seconds");
+  }
   const JsonReader asked = reader.at("questionnaire");
   asked.only({"nasa_tlx", "free_text"});
   const JsonReader tlx = asked.at("nasa_tlx");
@@ -258,7 +264,7 @@ std::string not_ready(const Protocol& protocol, const fs::path& file) {
   std::error_code error;
   if (!fs::exists(pin, error))
     return fmt::format("not pinned; once nothing will change any more: lgabench study check {} --pin",
-                       file.parent_path().empty() ? "." : file.parent_path().string());
+                       shell_line({file.parent_path().empty() ? "." : file.parent_path().string()}));
   const Json pinned = read_json(pin), now = pin_of(protocol);
   for (const char* part : {"protocol", "consent", "stimuli"})
     if (!pinned.is_object() || !pinned.contains(part) || pinned.at(part) != now.at(part))

@@ -11,7 +11,7 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space, read_from_shared_memory
 
-from lgabench.scenes import INDICES, Batch, Environment, Pool, Scenario, SPLITS
+from lgabench.scenes import INDICES, Batch, Environment, Pool, Scenario, SPLITS, refuse_copies
 
 __all__ = ["SceneEnv", "SceneVectorEnv", "dense_reward"]
 
@@ -169,8 +169,8 @@ class SceneEnv(gymnasium.Env[dict[str, Any], numpy.typing.NDArray[numpy.float32]
         self._picture = seen.rgb
         return {"rgb": seen.rgb, "ids": seen.ids, "instances": self.environment.instance_rows, "instruction": self.task}
 
-    def __deepcopy__(self, memo: Any) -> NoReturn:
-        raise TypeError("a scene's physics cannot be copied; make the environment again from its spec")
+    def __reduce__(self) -> NoReturn:
+        refuse_copies()
 
 
 class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
@@ -216,7 +216,7 @@ class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
             raise ValueError(f"reset_mask: expected {self.num_envs} truth values, one or more of them true")
         if not mask.all() and self._batch is None:
             raise RuntimeError("reset_mask: expected a reset() of all environments before it")
-        infos = self._begin([int(i) for i in numpy.flatnonzero(mask)], seeds, options)
+        infos = self._begin([int(i) for i in numpy.flatnonzero(mask)], seeds, self._of_each(options))
         return self._observations(), infos
 
     def step(self, actions: Any) -> tuple[dict[str, Any], Any, Any, Any, dict[str, Any]]:
@@ -236,7 +236,7 @@ class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
                 last = {name: array[i] for name, array in batch._asdict().items()}
                 last["instruction"] = utterances[i]
                 infos = self._add_info(infos, {"final_obs": last, "final_info": final}, i)
-            infos.update(self._begin(list(range(self.num_envs)), [None] * self.num_envs, {}))
+            infos.update(self._begin(list(range(self.num_envs)), [None] * self.num_envs, [{}] * self.num_envs))
         else:
             for i, final in enumerate(finals):
                 infos = self._add_info(infos, final, i)
@@ -250,15 +250,32 @@ class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
     def render(self) -> Any:
         return None if self.render_mode is None or self._batch is None else tuple(self._batch.rgb.copy())
 
+    def __reduce__(self) -> NoReturn:
+        refuse_copies()
+
     def close_extras(self, **kwargs: Any) -> None:
         self.__dict__.pop("pool", None)  # there is none where the constructor failed
 
-    def _begin(self, at: list[int], seeds: Sequence[Optional[int]], options: dict[str, Any]) -> dict[str, Any]:
+    def _of_each(self, options: dict[str, Any]) -> list[dict[str, Any]]:
+        """The options of each environment: a list has a value for each of them."""
+        each: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        for name, value in options.items():
+            is_list = isinstance(value, (list, tuple, numpy.ndarray))
+            if is_list and name == "split":
+                raise ValueError("options split: expected one for all environments")
+            if is_list and len(value) != self.num_envs:
+                raise ValueError(f"options {name}: expected one value, or {self.num_envs}, one for each environment, got "
+                                 f"{len(value)}")
+            for i, one in enumerate(each):
+                one[name] = value[i] if is_list else value
+        return each
+
+    def _begin(self, at: list[int], seeds: Sequence[Optional[int]], options: list[dict[str, Any]]) -> dict[str, Any]:
         for i in at:
             if seeds[i] is not None or i not in self._randoms:
                 self._randoms[i] = seeding.np_random(seeds[i])[0]
         self._ready[at] = False
-        chosen = [self._choices[i](seeds[i], options, self._randoms[i]) for i in at]
+        chosen = [self._choices[i](seeds[i], options[i], self._randoms[i]) for i in at]
         batch = self.pool.reset(chosen[0][0], [one[3] for one in chosen], arms=[one[1] for one in chosen],
                                 seeds=[one[2] for one in chosen], at=at)
         if len(at) < self.num_envs and self._batch is not None:

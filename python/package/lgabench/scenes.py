@@ -6,7 +6,7 @@ import os
 import pathlib
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Any, NamedTuple, Optional, Sequence, Union
+from typing import Any, NamedTuple, NoReturn, Optional, Sequence, Union
 
 import numpy
 import numpy.typing
@@ -63,7 +63,8 @@ class Scenario:
     """A task with its commands, layouts and test arms, by the id of a shipped scenario or by a file of your own (`path`)."""
 
     def __init__(self, id: Optional[str] = None, *, path: Union[str, os.PathLike[str], None] = None) -> None:
-        self._core = _core.scenario(id, None if path is None else os.fspath(path))
+        self._made_from = (id, None if path is None else os.path.abspath(path))
+        self._core = _core.scenario(*self._made_from)
         self.id: str = self._core.id
         self.task: str = self._core.task
         self.environment: str = self._core.environment
@@ -103,6 +104,13 @@ class Scenario:
     def __repr__(self) -> str:
         return f"lgabench.Scenario({self.id!r})"
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _scenario, self._made_from  # read again where it is unpickled
+
+
+def _scenario(id: Optional[str], path: Optional[str]) -> Scenario:
+    return Scenario(id, path=path)
+
 
 class StepResult(NamedTuple):
     """What an action led to. `failure` is "none" or a word of docs/protocol.md. If `came_to_rest` is False, the episode was cut
@@ -118,6 +126,11 @@ class StepResult(NamedTuple):
 def _expect(name: str, value: int, count: int) -> None:
     if not 0 <= value < count:
         raise ValueError(f"{name} {value}: expected 0 to {count - 1}")
+
+
+def refuse_copies() -> NoReturn:
+    """What copying or pickling an environment does."""
+    raise TypeError("a scene's physics cannot be copied or pickled; make the environment again where it is used")
 
 
 def as_scenario(scenario: Union[str, Scenario]) -> Scenario:
@@ -203,6 +216,9 @@ class Environment:
             raise RuntimeError("environment: closed")
         return self._one
 
+    def __reduce__(self) -> NoReturn:
+        refuse_copies()
+
     def __enter__(self) -> Environment:
         return self
 
@@ -227,6 +243,9 @@ class Pool:
         self.scenario = as_scenario(scenario)
         self.engine, self.layout = engine, layout_of(self.scenario, layout)
         self._pool = _core.Pool(self.scenario._core, engine, self.layout, count, threads or _core.usable_cores())
+
+    def __reduce__(self) -> NoReturn:
+        refuse_copies()
 
     def __len__(self) -> int:
         return len(self._pool)
