@@ -174,7 +174,7 @@ class CheckPlugin(Case):
         self.assertLess(used.ru_maxrss / (1 << 20), 1.5)
 
     def test_what_a_run_bears_is_a_note(self):
-        for words, check, says in (((UNSOUND, "--set", "how=far"), "bounds of actions", r"outside of their bounds, the first: \w+ = 1e\+06"),
+        for words, check, says in (((UNSOUND, "--set", "how=far"), "bounds of actions", r"outside of their bounds, the first: pose0.x = 1e\+06 m, of 0.25 to 0.75"),
                                    ((FIXTURES / "faulty/fixture_fast_math.so",), "compilation", "built with -ffast-math")):
             report = json.loads(self.call("check-plugin", *words, "--json").stdout)
             notes = {finding["check"]: finding["detail"] for finding in report["findings"] if finding["state"] == "note"}
