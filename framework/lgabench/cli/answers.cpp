@@ -18,6 +18,7 @@
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/expand.hpp>
 #include <lgabench/harness/suite.hpp>
+#include <lgabench/record/answer_source.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -186,8 +187,8 @@ void keep_replies(const AnswersArguments& a) {
         unanswered.insert(unanswered.end(), e.questions.begin(), e.questions.end());
       }
     });
-    next =
-        shell_line({"lgabench", "select", "--suite", suite, "--score", "--answers", "cassette:" + a.cassette.string()});
+    next = shell_line({"lgabench", "select", "--suite", suite, "--score", "--answers",
+                       to_string(CassetteAnswers{a.cassette.string()})});
   }
   for (const std::string& question : unanswered) to_stderr("no answer: {}\n", one_line(question));
   if (!unanswered.empty())
