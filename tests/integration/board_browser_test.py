@@ -116,7 +116,13 @@ class BoardInABrowser(Case):
         self.published("index.html")
         rows = "return [...document.querySelectorAll('#overview-any-policy tbody tr:not([hidden])')].map((row) => [...row.cells].map((c) => c.textContent))"
         heads = self.script("return [...document.querySelectorAll('#overview-any-policy thead th')].map((h) => h.textContent)")
+        first = self.script(rows)
+        self.assertGreaterEqual(min(sum(cell != "–" for cell in row[3:-1]) for row in first), (len(heads) - 4) / 2, "no rows of few suites")
+        constant = [row[0] for row in first].index("Best constant action")
+        self.assertLess(max([row[0] for row in first].index(name) for name in ("Human", "LGA", "LGA-S")), constant)
+        self.click(".filter input[type=checkbox]")
         everything = self.script(rows)
+        self.assertGreater(len(everything), len(first))
         self.assertEqual(heads[:3], ["method", "policy", "answers"])
         self.assertGreater(len(heads), 10)
         self.script("const one = document.querySelector('.filter select'); one.value = 'heat map'; one.onchange()")

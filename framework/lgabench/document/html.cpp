@@ -150,7 +150,10 @@ std::string grid_html(const Grid& grid) {
     std::size_t headed = 0;
     while (headed < row.cells.size() && !row.cells[headed].style) ++headed;
     if (headed == row.cells.size()) headed = 0;  // no method: the first column
-    body += row.reference ? "<tr class=reference>" : row.more ? "<tr class=more>" : "<tr>";
+    body += row.reference && row.more ? "<tr class=\"reference more\">"
+            : row.reference           ? "<tr class=reference>"
+            : row.more                ? "<tr class=more>"
+                                      : "<tr>";
     for (std::size_t i = 0; i < row.cells.size(); ++i)
       if (said[i].empty())
         body += fmt::format(i <= headed ? "<th scope=row>{}</th>" : "<td>{}</td>", cell_html(row.cells[i]));

@@ -93,8 +93,8 @@ struct Entry {
   fs::path place() const;
   /// SHA-256 over id and cells: what a nonce is drawn against.
   std::string hash() const;
-  /// SHA-256 of what it says beside its cells: entry.json with its first evidence alone and without /withdrawn, as
-  /// canonical JSON. Nothing of that changes.
+  /// SHA-256 of what it says beside its cells: entry.json in its long form, with its first evidence alone and without
+  /// /withdrawn, as canonical JSON. Nothing of that changes.
   std::string rest_hash() const;
   /// Of the machine that computed it first.
   Processor processor() const;

@@ -18,8 +18,10 @@
 namespace lgabench::leaderboard {
 namespace {
 
+constexpr std::uintmax_t most_bytes = 16 << 20;
+
 // Reads a file of an entry's cells or verifications; the largest published one has 130 kB.
-std::string read_bounded(const fs::path& file) { return read_file(file, Links::refused, 16 << 20); }
+std::string read_bounded(const fs::path& file) { return read_file(file, Links::refused, most_bytes); }
 
 void expect_sha256(const JsonReader& reader) {
   const std::string text = reader.string();

@@ -118,7 +118,8 @@ std::optional<Grid> overview_grid(const Suites& suites, Ranking ranking) {
   for (const auto& placed : sorted) {
     const auto& [row, numbers] = placed.second;
     const auto& [label, policy, answers] = row;
-    Grid::Row line{{}, {Span(label), Span(policy), Span(answers)}, numbers.reference};
+    const bool in_few = 2 * numbers.scores.size() < columns;
+    Grid::Row line{{}, {Span(label), Span(policy), Span(answers)}, numbers.reference, in_few};
     for (std::size_t k = 0; k < columns; ++k) {
       const auto own = numbers.cells.find(k);
       line.cells.push_back(own == numbers.cells.end() ? TableCell(Span::number("–")) : own->second);
@@ -159,7 +160,8 @@ Document overview(const Suites& suites) {
     section.add<Paragraph>(
         reading, {{words_of(ranking) + " The mean is that of rows which are in every suite of the table; a suite of "
                                        "perturbed scenes enters with its area. A row that lacks suites stands where "
-                                       "its success in the others puts it."}});
+                                       "its success in the others puts it; rows of less than half of "
+                                       "the suites are shown on request."}});
     section.add<Grid>(reading, std::move(*grid));
     document.sections.push_back(std::move(section));
   }

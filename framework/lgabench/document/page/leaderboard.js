@@ -94,8 +94,9 @@ if (boards.length) {
         : row.classList.contains("more") && !all.checked;
     for (const table of boards) explainRanks(rows.filter((row) => row.closest("table") === table), (row) => valueOf(row, "rank"));
   };
-  const more = [...document.querySelectorAll("[id^=table]:not([id*='-']) > .frame tr.more")].length;
-  label.append(all, more ? ` all rows (${more} more), not only each method’s best, trained and untrained` : "");
+  const more = [...document.querySelectorAll(":is([id^=table]:not([id*='-']), [id^=overview]) > .frame tr.more")].length;
+  const first = document.querySelector("[id^=overview]") ? "those of half of the suites" : "each method’s best, trained and untrained";
+  label.append(all, more ? ` all rows (${more} more), not only ${first}` : "");
   label.hidden = !more;
   wanted.oninput = all.onchange = apply;
   choices.forEach(([, choice]) => { choice.onchange = apply; });
