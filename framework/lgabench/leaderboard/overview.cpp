@@ -34,7 +34,7 @@ std::string section_of(Ranking ranking) {
 }
 
 // A row of the overview: what it is called, its policy and whose answers it acts on.
-using Row = std::tuple<std::string, std::string, std::string>;
+using RowWords = std::tuple<std::string, std::string, std::string>;
 
 struct Numbers {
   bool reference = false;
@@ -61,7 +61,7 @@ std::optional<Grid> overview_grid(const Suites& suites, Ranking ranking) {
   grid.name = section_of(ranking);
   grid.caption = capital(to_string(ranking)) + ": success of every method in every suite; bold: rank 1";
   grid.heads = {"method", "policy", "answers"};
-  std::map<Row, Numbers> rows;
+  std::map<RowWords, Numbers> rows;
   std::size_t columns = 0;
   for (const auto& [suite, tables] : suites) {
     std::size_t first_row = 0;
@@ -86,7 +86,7 @@ std::optional<Grid> overview_grid(const Suites& suites, Ranking ranking) {
   grid.heads.emplace_back("mean");
   grid.align = "lll" + std::string(columns + 1, 'r');
   // Rows that are in all suites by their mean, then those in fewer.
-  std::vector<std::pair<Row, Numbers>> sorted(rows.begin(), rows.end());
+  std::vector<std::pair<RowWords, Numbers>> sorted(rows.begin(), rows.end());
   const auto mean = [](const Numbers& row) { return report::mean(row.scores); };
   std::stable_sort(sorted.begin(), sorted.end(), [&](const auto& one, const auto& other) {
     return std::pair(one.second.scores.size(), mean(one.second)) >
