@@ -1,6 +1,5 @@
-lgabench_unit_test(learning_test SHARDS 2 SOURCES learning_test.cpp centroid_policy_test.cpp heat_map_test.cpp stations_test.cpp noisy_copies_test.cpp shown_input_test.cpp
+lgabench_unit_test(learning_test OPTIMISED SHARDS 2 SOURCES learning_test.cpp centroid_policy_test.cpp heat_map_test.cpp stations_test.cpp noisy_copies_test.cpp shown_input_test.cpp
                    LINK lgabench_learning)
-target_compile_options(learning_test PRIVATE -O1)
 lgabench_unit_test(learning_allocations_test SOURCES learning_allocations_test.cpp LINK lgabench_learning)
 add_dependencies(learning_test lga lga_hill human lga_s lga_l gcbc_dart gcbc_seg factorial)
 if(LGABENCH_TORCH)
