@@ -29,6 +29,16 @@ function(lgabench_environment name)
   set_property(GLOBAL APPEND PROPERTY lgabench_environments lgabench_${name})  # whatever reads scenarios needs them all
 endfunction()
 
+# Headers that most files of some targets include, compiled once: target_precompile_headers(TARGET REUSE_FROM GROUP) of targets
+# with the flags that hold where this is called.
+function(lgabench_precompile group)
+  file(CONFIGURE OUTPUT ${group}.cpp CONTENT "")
+  add_library(${group} OBJECT ${CMAKE_CURRENT_BINARY_DIR}/${group}.cpp)
+  target_link_libraries(${group} PRIVATE lgabench_core)
+  lgabench_target(${group})
+  target_precompile_headers(${group} PRIVATE ${ARGN})
+endfunction()
+
 # What plugins include, by name: it is installed, and has pages (docs/Doxyfile.in). All else is private, whatever its
 # folder: what a method may not see, or what a later version may change.
 set(lgabench_public_headers

@@ -183,7 +183,8 @@ class NewPlugin(Consumer):
             self.assertEqual(set(checks.values()), {"ok"})
         else:
             self.lgabench("new-plugin", "my_network", "--with", "torch")
-        source = (self.dir / "my_network/my_network.cpp").read_text()
+        source, build = ((self.dir / "my_network" / name).read_text() for name in ("my_network.cpp", "CMakeLists.txt"))
+        self.assertIn("target_precompile_headers(${PROJECT_NAME} PRIVATE <lgabench/plugin/plugin.hpp> <lgabench/learning/torch_learner.hpp>)", build)
         self.assertIn("class MyNetwork : public CloningMethod", source)
         self.assertNotIn("own_network", source.lower())
         said = self.lgabench("new-plugin", "wrong", "--with", "torch", "--language", "python", expect=2).stderr

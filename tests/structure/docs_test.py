@@ -152,6 +152,15 @@ class Pages(unittest.TestCase):
         self.assertLessEqual(len(page.split()), 700)
         self.assertEqual([line.split()[0] for line in split_code(page)[1][:2]], ["./quickstart", "./test"])
 
+    def test_the_time_of_a_first_build_is_the_processors_and_one_number(self):
+        pages = "".join((SOURCE / name).read_text() for name in ("README.md", "docs/README.md", "docs/tutorial.md"))
+        first, = re.findall(r"\./quickstart .* after (\d+) processor minutes", pages)
+        whole = re.findall(r"all built after (\d+);", pages) + re.findall(r"\./install .*# (\d+) processor minutes", pages) \
+            + re.findall(r" and (\d+) processor minutes: two", pages)
+        self.assertEqual((len(whole), len(set(whole))), (4, 1), whole)
+        self.assertLess(int(first), int(whole[0]))
+        self.assertNotRegex(pages, r"\./(install|quickstart).*\d minutes")
+
     def test_the_smallest_method_is_shown_whole(self):
         example = SOURCE / "examples/select_only"
         for language, file in ("cpp", "select_only.cpp"), ("cmake", "CMakeLists.txt"):

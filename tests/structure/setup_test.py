@@ -86,6 +86,31 @@ class MovedClones(unittest.TestCase):
                                       "Build anew: rm -r build/release, then the same command\n")
 
 
+class Quickstart(unittest.TestCase):
+    """In the place of what it calls stand scripts that say what they were told."""
+
+    def told(self, directory, *arguments):
+        return subprocess.run([shutil.which("bash"), directory / "quickstart", *arguments], capture_output=True, text=True,
+                              check=True).stdout.splitlines()
+
+    def test_the_table_comes_before_the_rest_is_built_and_again_at_the_end(self):
+        first, whole, run = "build release first_run -DLGABENCH_TESTS=OFF", "build release -DLGABENCH_TESTS=OFF", "run clutter --preset smoke"
+        with tempfile.TemporaryDirectory() as folder:
+            directory = pathlib.Path(folder)
+            shutil.copy(SOURCE / "quickstart", directory)
+            program = directory / "build/release/bin/lgabench"
+            for script, lines in (("setup", ""), ("build", f'mkdir -p {program.parent}\nprintf \'#!/bin/sh\necho "$@"\' >{program}\n'
+                                                           f'chmod +x {program}\necho build "$@"\n')):
+                (directory / "cmake").mkdir(exist_ok=True)
+                (directory / "cmake" / script).write_text("#!/bin/bash\n" + lines)
+                (directory / "cmake" / script).chmod(0o755)
+            fresh = self.told(directory)
+            self.assertEqual([line for line in fresh if line and "now" not in line], [first, run, whole, run])
+            self.assertEqual(self.told(directory), [whole, run])
+            program.unlink()
+            self.assertEqual(self.told(directory, "q1", "--engines", "bullet"), [whole, "run q1 --engines bullet"])
+
+
 class Seconds(unittest.TestCase):
     def of(self, script):
         """Of a script in a copy of what the table is made by."""

@@ -2,6 +2,7 @@
 
 Usage: structure_test.py SOURCE_DIR BUILD_DIR [CLASS...]
 """
+import json
 import pathlib
 import re
 import subprocess
@@ -24,6 +25,23 @@ def includes(folder):
 def needed(file):
     out = subprocess.run(["readelf", "-d", file], check=True, capture_output=True, text=True).stdout
     return re.findall(r"\(NEEDED\).*\[(.*)\]", out)
+
+
+class FirstRun(unittest.TestCase):
+    """./quickstart builds the target first_run, and then runs a preset."""
+
+    def ninja(self, tool):
+        return subprocess.run(["ninja", "-C", BUILD, "-t", tool, "first_run"], check=True, capture_output=True, text=True).stdout
+
+    def test_the_target_has_the_plugins_of_the_preset(self):
+        suite, preset = re.search(r"arguments=\((\w+) --preset (\w+)\)", (SOURCE / "quickstart").read_text()).groups()
+        methods = json.loads((SOURCE / f"envs/tabletop/suites/{suite}.json").read_text())["presets"][preset]["methods"]
+        self.assertEqual(set(re.findall(r"plugins/(\w+)\.so", self.ninja("query"))), {*methods, "mujoco"})
+
+    def test_the_target_has_every_environment_and_nothing_of_libtorch(self):
+        inputs = self.ninja("inputs")
+        self.assertEqual(sorted(re.findall(r"liblgabench_env_(\w+)\.so", inputs)), ENVIRONMENTS)
+        self.assertNotIn("torch", inputs)
 
 
 class IncludeGraph(unittest.TestCase):

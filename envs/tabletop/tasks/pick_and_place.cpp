@@ -9,7 +9,7 @@
 namespace lgabench::tabletop {
 namespace {
 
-constexpr double near_m = 0.1;  // of the goal's centre
+constexpr double placed_within_m = 0.1;  // of the goal's centre
 
 class PickAndPlace final : public Task {
  public:
@@ -39,9 +39,9 @@ class PickAndPlace final : public Task {
   Failure judge(const Scene& scene, const Final& target, const std::vector<Final>& finals,
                 const JudgeLimits& limits) const override {
     const Vec2 goal = goal_of(scene, finals);
-    if (off_m(scene, target, finals) > limits.position_m.value_or(near_m)) return failure::bad_placement;
+    if (off_m(scene, target, finals) > limits.position_m.value_or(placed_within_m)) return failure::bad_placement;
     for (const Final& f : finals)
-      if (is_other(f) && norm(f.centre_m - goal) <= near_m) return failure::bad_placement;
+      if (is_other(f) && norm(f.centre_m - goal) <= placed_within_m) return failure::bad_placement;
     return failure::none;
   }
 
@@ -53,8 +53,8 @@ class PickAndPlace final : public Task {
     const Vec2 goal = goal_of(scene, finals);
     double others_m = 0;
     for (const Final& f : finals)
-      if (is_other(f)) others_m = std::max(others_m, near_m - norm(f.centre_m - goal));
-    return {{"place_m", std::max(0., off_m(scene, target, finals) - near_m)}, {"others_m", others_m}};
+      if (is_other(f)) others_m = std::max(others_m, placed_within_m - norm(f.centre_m - goal));
+    return {{"place_m", std::max(0., off_m(scene, target, finals) - placed_within_m)}, {"others_m", others_m}};
   }
 
  private:

@@ -21,13 +21,13 @@ namespace lgabench::cli {
 namespace {
 
 // What it declares.
-void print(const PerturbationAxis& axis) {
+void print_info(const PerturbationAxis& axis) {
   for (std::size_t i = 0; i < axis.levels.size(); ++i) to_stdout("  level {:<4}  {}\n", i + 1, axis.levels[i]);
   to_stdout("  changes     {}\n", fmt::join(part_words(axis.changes), ", "));
   if (!axis.may_change.empty()) to_stdout("  sometimes   {}\n", fmt::join(part_words(axis.may_change), ", "));
 }
 
-void print(const PluginInfo& plugin) {
+void print_info(const PluginInfo& plugin) {
   to_stdout("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind == "engine" ? "an" : "a", plugin.kind);
   to_stdout("  {}\n  file        {}\n  sha256      {}\n  built with  {}\n", plugin.summary, plugin.file.string(),
             plugin.sha256, plugin.fingerprint);
@@ -35,7 +35,7 @@ void print(const PluginInfo& plugin) {
     to_stdout("  asks        {}\n", plugin.asks == "truth"    ? "for the truth: a diagnosis"
                                     : plugin.asks == "accept" ? "people to accept objects that they are shown"
                                                               : "people to " + plugin.asks);
-  if (plugin.kind == "perturbation") print(read_axis(plugin.id, JsonReader(plugin.axis, plugin.file.string())));
+  if (plugin.kind == "perturbation") print_info(read_axis(plugin.id, JsonReader(plugin.axis, plugin.file.string())));
   if (plugin.options.empty()) return;
   to_stdout("options, set with --set {}.NAME=VALUE\n", plugin.id);
   for (const auto& [name, option] : plugin.options.items()) {
@@ -56,7 +56,7 @@ std::string names(const std::vector<std::string>& chosen, const std::vector<std:
   return chosen.size() == all.size() ? fmt::format("all {}", all.size()) : fmt::format("{}", fmt::join(chosen, ", "));
 }
 
-void print(const Scenario& scenario) {
+void print_info(const Scenario& scenario) {
   to_stdout("{}, a scenario in {}\n  task        {}\n", scenario.id, scenario.environment, scenario.task);
   const auto print_set = [&scenario](const char* role, const FeatureSet& set) {
     to_stdout("  {:<10}  {}; textures: {}\n", role, names(set.object_types, scenario.space.object_types),
@@ -77,7 +77,7 @@ void print(const Scenario& scenario) {
   if (reader.has("note")) to_stdout("  note        {}\n", reader.at("note").string());
 }
 
-void print(const Suite& suite) {
+void print_info(const Suite& suite) {
   to_stdout("{}, a suite in {}\n  file  {}\n", suite.id, suite.environment, suite.file);
   const auto words_of = [](const Json& value) {
     if (!value.is_array()) return value.is_string() ? value.get<std::string>() : canonical(value);
@@ -119,7 +119,7 @@ Json to_json(const EnvironmentType& environment) {
           {"action", lgabench::to_json(environment.action_space())}};
 }
 
-void print(const EnvironmentType& environment) {
+void print_info(const EnvironmentType& environment) {
   to_stdout("{}, an environment\n", environment.id());
   for (const TaskInfo& task : environment.tasks()) {
     to_stdout("  task        {}\n    layouts     {}\n    failures    {}\n    example     {}\n", task.id,
@@ -143,7 +143,7 @@ void print_reference_row(const Json& row) {
 
 void print_own(const PerturbationAxis& axis) {
   to_stdout("{}, a perturbation axis\n", axis.id);
-  print(axis);
+  print_info(axis);
 }
 
 Json to_json(const PerturbationAxis& axis) {
@@ -158,7 +158,7 @@ void info(const std::string& name, bool json, const std::vector<fs::path>& direc
   Json found = Json::array();  // an environment and a suite may have one name
   for (const PluginInfo& plugin : catalogue.plugins)
     if (plugin.id == name) {
-      if (!json) print(plugin);
+      if (!json) print_info(plugin);
       found.push_back(to_json(plugin));
     }
   for (const PerturbationAxis& axis : perturbation_axes())
@@ -168,18 +168,18 @@ void info(const std::string& name, bool json, const std::vector<fs::path>& direc
     }
   if (contains(scenario_ids(), name)) {
     const Scenario scenario = load_scenario(name);
-    if (!json) print(scenario);
+    if (!json) print_info(scenario);
     found.push_back(scenario.json);
     found.back()["kind"] = "scenario";
   }
   if (fs::exists(data_directory() / "suites" / (name + ".json"))) {
     const Suite suite = load_suite(name);
-    if (!json) print(suite);
+    if (!json) print_info(suite);
     found.push_back(to_json(suite));
   }
   if (contains(environment_ids(), name)) {
     const EnvironmentType& environment = find_environment(name);
-    if (!json) print(environment);
+    if (!json) print_info(environment);
     found.push_back(to_json(environment));
   }
   for (const Json& row : reference_rows())

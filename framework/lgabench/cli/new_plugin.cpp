@@ -30,11 +30,16 @@ struct NewPluginArguments {
 // A library that a method may use beside lgabench's: what CMake says of it.
 struct Library {
   const char *found, *linked;
+  const char* precompiled = "";
 };
 const std::map<std::string, Library> libraries{
     {"", {"", ""}},
     {"opencv", {"find_package(OpenCV REQUIRED COMPONENTS core imgproc)\n", " opencv_core opencv_imgproc"}},
-    {"torch", {"find_package(Torch REQUIRED)\n", " ${TORCH_LIBRARIES}"}}};
+    {"torch",
+     {"find_package(Torch REQUIRED)\n", " ${TORCH_LIBRARIES}",
+      "# These headers take most of a compiler's time: they are read once.\n"
+      "target_precompile_headers(${PROJECT_NAME} PRIVATE <lgabench/plugin/plugin.hpp> "
+      "<lgabench/learning/torch_learner.hpp>)\n"}}};
 
 // Classes that a template names, and words of Python that look like one.
 const std::array<std::string, 21> other_classes{"Action",       "CloningMethod",
@@ -108,6 +113,7 @@ void new_plugin(const NewPluginArguments& a) {
                                        {"@KIND@", a.kind},
                                        {"@FOUND@", libraries.at(a.with).found},
                                        {"@LINKED@", libraries.at(a.with).linked},
+                                       {"@PRECOMPILED@", libraries.at(a.with).precompiled},
                                        {"@VERSION@", version},
                                        {"@NUMBER@", number},
                                        {"@PREFIX@", to == "README.md" ? path_word(prefix) : prefix.string()}}));

@@ -11,7 +11,7 @@ namespace lgabench {
 namespace {
 
 // Status of a cell whose worker left none.
-CellStatus failure(const WorkerEnd& end, double timeout_s, const fs::path& log, const Json& build) {
+CellStatus failed_status(const WorkerEnd& end, double timeout_s, const fs::path& log, const Json& build) {
   const auto [reason, fault] = why_it_ended(end, timeout_s);
   CellStatus status;
   status.failed = true;
@@ -44,7 +44,7 @@ std::string settle(const Cell& cell, const WorkerEnd& end, const fs::path& scrat
   const bool ended_well = end.exit_code == 0 && end.signal == 0;
   const CellState state = ended_well && has_status(scratch) ? cell_state(scratch, key(cell), build) : CellState();
   if (state.complete) return "";
-  CellStatus status = failure(end, timeout_s, scratch / cell_file::log, build);
+  CellStatus status = failed_status(end, timeout_s, scratch / cell_file::log, build);
   if (!state.why.empty()) status.reason = state.why;  // a plugin touched what was written
   for (const auto& entry : fs::directory_iterator(scratch))
     if (entry.path().filename() != cell_file::log) fs::remove_all(entry.path());  // parts of a result are none

@@ -34,7 +34,7 @@ std::string section_of(Ranking ranking) {
 }
 
 // A row of the overview: what it is called, its policy and whose answers it acts on.
-using Row = std::tuple<std::string, std::string, std::string>;
+using RowWords = std::tuple<std::string, std::string, std::string>;
 
 struct Numbers {
   bool reference = false;
@@ -49,7 +49,7 @@ struct Numbers {
 };
 
 // Success in each column, on average over the rows that are in all of them; over all rows where none is.
-std::vector<double> typical_success(const std::map<Row, Numbers>& rows, std::size_t columns) {
+std::vector<double> typical_success(const std::map<RowWords, Numbers>& rows, std::size_t columns) {
   const bool some_are_whole =
       std::any_of(rows.begin(), rows.end(), [&](const auto& row) { return row.second.scores.size() == columns; });
   std::vector<std::vector<double>> by_column(columns);
@@ -80,7 +80,7 @@ std::optional<Grid> overview_grid(const Suites& suites, Ranking ranking) {
   grid.name = section_of(ranking);
   grid.caption = capital(to_string(ranking)) + ": success of every method in every suite; bold: rank 1";
   grid.heads = {"method", "policy", "answers"};
-  std::map<Row, Numbers> rows;
+  std::map<RowWords, Numbers> rows;
   std::size_t columns = 0;
   for (const auto& [suite, tables] : suites) {
     std::size_t first_row = 0;
@@ -111,7 +111,7 @@ std::optional<Grid> overview_grid(const Suites& suites, Ranking ranking) {
     for (const auto& [column, score] : row.scores) sum += score - typical[column];
     return sum / static_cast<double>(row.scores.size());
   };
-  std::vector<std::pair<double, std::pair<Row, Numbers>>> sorted;
+  std::vector<std::pair<double, std::pair<RowWords, Numbers>>> sorted;
   for (auto& row : rows) sorted.emplace_back(beside_typical(row.second), row);
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const auto& one, const auto& other) { return one.first > other.first; });

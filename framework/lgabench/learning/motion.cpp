@@ -7,8 +7,8 @@
 namespace lgabench {
 namespace {
 
-constexpr double alike = .15;          // unit vectors that are one direction
-constexpr double least_spread = 1e-3;  // m: less is none
+constexpr double same_direction = .15;  // unit vectors that are one direction
+constexpr double least_spread = 1e-3;   // m: less is none
 
 // q and -q turn alike: the one on the sum's side is added. An angle's cosine and sine have no such twin.
 void add_rotation(Action& sum, const Action& label, const std::vector<std::size_t>& rotation) {
@@ -45,7 +45,7 @@ Groups by_push(const ActionSpace& actions, const std::vector<Demonstrated>& all)
   Groups groups;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto same = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
-      return norm(push(all[group.front()].label) - push(all[i].label)) < alike;
+      return norm(push(all[group.front()].label) - push(all[i].label)) < same_direction;
     });
     if (same == groups.end())
       groups.push_back({i});

@@ -14,20 +14,20 @@
 namespace lgabench::report {
 namespace {
 
-struct Mark {
+struct Symbol {
   const char* name;
   int sides;
   double turned;
 };
-constexpr std::array<Mark, 9> marks{{{"circle", 0, 0},
-                                     {"square", 4, 45},
-                                     {"triangle", 3, -90},
-                                     {"diamond", 4, 0},
-                                     {"triangle_down", 3, 90},
-                                     {"pentagon", 5, -90},
-                                     {"hexagon", 6, 0},
-                                     {"triangle_right", 3, 0},
-                                     {"triangle_left", 3, 180}}};
+constexpr std::array<Symbol, 9> marks{{{"circle", 0, 0},
+                                       {"square", 4, 45},
+                                       {"triangle", 3, -90},
+                                       {"diamond", 4, 0},
+                                       {"triangle_down", 3, 90},
+                                       {"pentagon", 5, -90},
+                                       {"hexagon", 6, 0},
+                                       {"triangle_right", 3, 0},
+                                       {"triangle_left", 3, 180}}};
 constexpr std::array<const char*, 4> spare{"#8C564B", "#7F3C8D", "#4B6A00", "#909400"};
 
 struct Known {
@@ -52,7 +52,7 @@ const std::map<std::string, Known>& known() {
     int rank = 0;
     for (const JsonReader& method : reader.at("methods").elements()) {
       const std::string word = method.at("mark").string();
-      const auto mark = std::find_if(marks.begin(), marks.end(), [&word](const Mark& m) { return word == m.name; });
+      const auto mark = std::find_if(marks.begin(), marks.end(), [&word](const Symbol& m) { return word == m.name; });
       if (mark == marks.end()) method.at("mark").fail("circle, square, triangle, diamond, triangle_down, ...");
       found[method.at("id").string()] = {method.at("name").string(), method.at("colour").string(), rank++,
                                          static_cast<std::size_t>(mark - marks.begin())};
@@ -153,7 +153,7 @@ MethodStyles::MethodStyles(const std::vector<std::string>& methods, std::map<std
       mark = static_cast<std::size_t>(std::find(strange.begin(), strange.end(), id) - strange.begin());
       style.colour = spare[mark % spare.size()];
     }
-    const Mark& drawn = marks[(mark + variant / 2) % marks.size()];
+    const Symbol& drawn = marks[(mark + variant / 2) % marks.size()];
     style.sides = drawn.sides;
     style.turned = drawn.turned;
     style.hollow = variant % 2 == 1;

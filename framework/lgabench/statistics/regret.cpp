@@ -30,7 +30,7 @@ std::vector<std::vector<std::vector<double>>> outcomes(const Persons& persons) {
   return all;
 }
 
-double mean_of(const Persons& persons) {
+double mean_success(const Persons& persons) {
   double sum = 0;
   for (const auto& one : persons) sum += mean(one.second);
   return sum / static_cast<double>(persons.size());
@@ -78,8 +78,8 @@ std::vector<Regret> regrets(const RunResults& run) {
           fmt::format("report/regret/{}/{}/{}/{}/{}", layout, engine, demonstrations, questions, method), {},
           SharedResamples::Draws::scenarios_too);
       all.push_back({layout, engine, method, demonstrations, questions, static_cast<int>(row.persons.size()),
-                     mean_of(row.persons), mean_of(bayes->persons) - mean_of(row.persons), resamples.interval(0),
-                     resamples.difference(0, 1)});
+                     mean_success(row.persons), mean_success(bayes->persons) - mean_success(row.persons),
+                     resamples.interval(0), resamples.difference(0, 1)});
     }
   }
   return all;
