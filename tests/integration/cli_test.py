@@ -92,7 +92,7 @@ class Mistakes(Case):
             (["run", "--lmit=3"], r'unknown option --lmit \(did you mean "--limit"\?\)'),
             (["select", "heart", "--answer", "claude"], r'^lgabench: unknown option --answer \(did you mean "--answers"'),
             (["run"], r"^lgabench: SUITE is missing; usage: lgabench run \[OPTIONS\] SUITE$"),
-            (["leaderboard"], r"^lgabench: add\|verify\|vouch\|build\|check\|withdraw\|supersede\|scenes is missing; usage: "),
+            (["leaderboard"], r"^lgabench: ACTION is missing; usage: lgabench leaderboard \[OPTIONS\] ACTION \[WHAT\] \[LINE\]$"),
             (["run", "q1", "--set", "lga.network=plane", "--dry-run"], r'\(did you mean "plain"\?\), got "plane"'),
             (["merge"], r"OUT is missing; usage: lgabench merge \[OPTIONS\] OUT RUN\.\.\.$"),
             (["compare", "a"], r"compare: expected A B, or A --rows ROW_A,ROW_B$"),

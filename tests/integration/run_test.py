@@ -339,6 +339,16 @@ class Shards(Case):
         self.assertEqual(*({name: value for name, value in run.items() if name not in own} for run in (whole, both)))
         self.assertEqual([re.search(r"--shard (\S+)", part["command"])[1] for part in both["merged"]], ["1/2", "2/2"])
         self.assertEqual(self.call("merge", "both", "part1", "part2", expect=3).stdout, said.stdout)  # again
+        self.assertNotIn("may not be bit-identical", said.stderr)
+        record = self.dir / "part2/run.json"
+        here = json.loads(record.read_text())["machine"]["instructions"]
+        for machine, words in (({"processor": "Z80", "instructions": "AVX2"}, "Z80 with AVX2" if here == "without FMA" else None),
+                               ({"processor": "Z80"}, "Z80, instructions not recorded")):
+            shutil.copytree(self.dir / "part2", self.dir / "elsewhere", dirs_exist_ok=True)
+            (self.dir / "elsewhere/run.json").write_text(json.dumps({**json.loads(record.read_text()), "machine": machine}))
+            said_of_it = self.call("merge", "of_two", "part1", "elsewhere", expect=3).stderr
+            self.assertEqual(f"elsewhere: computed on {words}, " in said_of_it, words is not None, said_of_it)
+            shutil.rmtree(self.dir / "of_two")
         # A run like any other: it goes on, and only what failed is computed again.
         said = self.call(*self.RUN, "--out", "both", "--resume", expect=3).stderr
         self.assertIn(f"0 cells computed, {self.CELLS - self.FAILED} reused, {self.FAILED} failed", said)

@@ -270,7 +270,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
   auto a = std::make_shared<LeaderboardArguments>();
   Verb verb(app, "leaderboard", "Add results to a leaderboard, check it, and make its pages");
   const Words actions{"add", "verify", "vouch", "build", "check", "withdraw", "supersede", "scenes"};
-  verb.option("ACTION add|verify|vouch|build|check|withdraw|supersede|scenes", a->action, "The action", required,
+  verb.option("ACTION", a->action, "add, verify, vouch, build, check, withdraw, supersede or scenes", required,
               one_of("action", actions));
   verb.option("WHAT", a->what,
               "add, supersede: a run's directory; verify, vouch, withdraw, scenes: an entry's directory or id (without "

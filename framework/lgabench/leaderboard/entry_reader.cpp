@@ -1,6 +1,5 @@
 // An entry's files, read and checked into a value: what somebody sent is untrusted.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -202,7 +201,8 @@ Entry read_files(const fs::path& path, const Vouched* vouched) {
   expect_plain_entries(path);
   for (const auto& file : fs::directory_iterator(path))
     if (!contains(entry_files, file.path().filename()))
-      throw InputError(fmt::format("{}: expected only {} here", file.path().string(), fmt::join(entry_files, ", ")));
+      throw InputError(
+          fmt::format("{}: expected only entry.json, cells.jsonl and verifications.jsonl here", file.path().string()));
   const fs::path file = path / "entry.json";
   const std::string bytes = read_file(file, Links::refused, most_entry_bytes);
   const Json json = expanded(parse_json(bytes, file.string()), file.string());
