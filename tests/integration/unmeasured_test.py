@@ -151,7 +151,7 @@ class Unplayed(case.BesideOneRun):
         whole = self.call("rescore", "run").stdout
         self.damage(self.cell_folders()[0])
         done = self.call("rescore", "run", expect=3)
-        self.assertLess(len(done.stdout.splitlines()), len(whole.splitlines()))
+        self.assertNotEqual(done.stdout, whole)
         said = self.call("report", "run", expect=2).stderr
         why, = re.findall("^left out: .*timing.json.*$", said, re.M)
         self.assertIn(why, done.stderr.splitlines(), "in report's words")
@@ -159,6 +159,7 @@ class Unplayed(case.BesideOneRun):
             self.damage(folder)
         done = self.call("rescore", "run", expect=3)
         self.assertEqual(len(re.findall("^left out: ", done.stderr, re.M)), 4)
+        self.assertEqual(done.stdout.splitlines()[-1].split()[0], "row", "no number below the heads")
 
     def test_rescore_of_a_part_says_so(self):
         shutil.rmtree(self.cell_folders()[0])
