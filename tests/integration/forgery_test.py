@@ -484,6 +484,7 @@ class Forgeries(Case):
 
     def test_what_was_superseded_stays(self):
         before = entry_hash(self.rival)
+        self.add_line(self.rival, cells=3)  # what made somebody look
         kept, place = self.supersede(self.rival), self.rival.relative_to(self.board)
         at = kept.relative_to(self.board)
         self.forget(before)

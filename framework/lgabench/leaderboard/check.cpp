@@ -37,8 +37,9 @@ std::string changed_entry(const fs::path& file, const std::string& before, const
   return "";
 }
 
-// What became of an entry's file that the revision has; "" where that may be.
-std::string changed(const fs::path& file, const std::string& before) {
+}  // namespace
+
+std::string what_changed(const fs::path& file, const std::string& before) {
   if (!fs::exists(fs::symlink_status(file))) return "is gone (leaderboard withdraw keeps the record)";
   const std::string now = read_file(file, Links::refused);
   if (now == before) return "";
@@ -46,6 +47,8 @@ std::string changed(const fs::path& file, const std::string& before) {
   if (file.filename() == "verifications.jsonl") return now.rfind(before, 0) == 0 ? "" : "a verification changed";
   return "an outcome or a cell changed";
 }
+
+namespace {
 
 using Files = std::map<std::string, std::string>;
 
@@ -72,7 +75,7 @@ void compare_with(const Files& before, const fs::path& board, const std::vector<
   for (const auto& [file, bytes] : before) {
     try {
       if (file.rfind("entries/", 0) != 0 || superseded.count(fs::path(file).parent_path().string()) > 0) continue;
-      if (const std::string what = changed(board / file, bytes); !what.empty())
+      if (const std::string what = what_changed(board / file, bytes); !what.empty())
         checked.problems.push_back(fmt::format("{}: {} since {}", file, what, options.against));
     } catch (const InputError& e) {  // a link, say, in the place of a file
       checked.problems.emplace_back(e.what());

@@ -23,6 +23,10 @@ struct Checked {
 inline constexpr std::array maintainers_files{vouched_file, vouched_entries_file, instructions_file,
                                               labels_file,  tracks_file,          scenes_file};
 
+/// What became of an entry's file that had these bytes; "" where that may be: added verifications, evidence, a
+/// withdrawal. @throws InputError for a link in its place.
+std::string what_changed(const fs::path& file, const std::string& before);
+
 struct CheckOptions {
   std::string against;      // a revision (files_at()) whose outcomes must not have changed; "": none
   bool maintainer = false;  // who asks may change maintainers_files

@@ -17,9 +17,9 @@ std::string other_cell(const Entry& there, const Entry& here);
 /// for each that an entry names and that is not there; and for each whose cells are not that entry's.
 std::vector<std::string> problems_of_superseded(const fs::path& board, const std::vector<Entry>& entries);
 
-/// The entries of which the board has a successor since, and nothing else became of them: places, relative to the
-/// board. `before`: bytes of the board's files. What lay in superseded/ must lie there unchanged, and what is new there
-/// must be such an entry; else `problems` gets a line that names the revision.
+/// The entries of which the board has a successor since, and that lie in superseded/ as what_changed() allows: places,
+/// relative to the board. `before`: bytes of the board's files. What lay in superseded/ must lie there unchanged, and
+/// what is new there must be such an entry; else `problems` gets a line that names the revision.
 std::set<std::string> superseded_since(const std::map<std::string, std::string>& before, const fs::path& board,
                                        const std::vector<Entry>& entries, const std::string& revision,
                                        std::vector<std::string>& problems);
