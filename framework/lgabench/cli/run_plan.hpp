@@ -25,8 +25,8 @@ struct RunArguments {
   long reply_timeout_s = OpenAiOptions().timeout_s;
   int concurrency = LiveModel().concurrency;
   std::string program;  // as --version says
-  bool unconfined = false, keep_policy = false, any_served = false, rehearsal = false, resume = false, fresh = false, dry_run = false,
-       no_reference = false, json = false, tables = false, quiet = false;
+  bool unconfined = false, keep_policy = false, any_served = false, rehearsal = false, resume = false, fresh = false,
+       dry_run = false, no_reference = false, json = false, tables = false, quiet = false;
 };
 
 /// The options of `run`. Its --help leaves out those that are rarely needed.
