@@ -88,7 +88,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   entry.verifications.clear();
   std::string lines;
   static const std::string rest = entry.rest_hash();
-  Vouched all{{}, {{hash, rest}}};
+  Vouched all{{}, {{hash, rest}}, {}};
   for (const std::string_view line : fuzz::split(text, "\n")) {
     if (line.empty()) continue;
     Json json = json_or_null(line);

@@ -28,9 +28,9 @@ std::vector<char*> pointers(const std::vector<std::string>& words) {
 constexpr int not_started = 127;  // an exit status, as a shell's
 
 // How far a process came on the way to its program, and errno: as it tells its parent. Nothing where it got there.
-enum class Step { done, directory, in_child, descriptors, program };
+enum class Stage { done, directory, in_child, descriptors, program };
 struct Stopped {
-  Step step = Step::done;
+  Stage step = Stage::done;
   int reason = 0;
 };
 
@@ -43,14 +43,14 @@ Stopped told_by(const Descriptor& pipe) {
   return n == sizeof stopped ? stopped : Stopped();
 }
 
-std::string said_of(Step step, const ProcessStart& start) {
+std::string said_of(Stage step, const ProcessStart& start) {
   const std::string program = start.words.front();
   switch (step) {
-    case Step::directory:
+    case Stage::directory:
       return start.directory.string() + ": cannot be entered";
-    case Step::in_child:
+    case Stage::in_child:
       return program + ": cannot be prepared";
-    case Step::descriptors:
+    case Stage::descriptors:
       return program + ": cannot be given its files";
     default:
       return program + ": cannot be started";
@@ -95,14 +95,14 @@ pid_t start_process(const ProcessStart& start) {
   if (pid < 0) throw Refused("fork");
   if (pid > 0) {
     writing.close();
-    if (const auto [step, reason] = told_by(reading); step != Step::done) {
+    if (const auto [step, reason] = told_by(reading); step != Stage::done) {
       wait_for(pid);
       throw Refused(said_of(step, start), reason);
     }
     return pid;
   }
   reading.close();
-  const auto give_up = [&writing](Step step) {
+  const auto give_up = [&writing](Stage step) {
     const Stopped stopped{step, errno};
     [[maybe_unused]] const ssize_t told = ::write(writing.fd, &stopped, sizeof stopped);  // or nobody listens any more
     ::_exit(not_started);
@@ -110,25 +110,25 @@ pid_t start_process(const ProcessStart& start) {
   ::signal(SIGXFSZ, SIG_DFL);  // which lgabench ignores
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(not_started);  // which died before that took effect
-  if (!start.directory.empty() && ::chdir(start.directory.c_str()) != 0) give_up(Step::directory);
+  if (!start.directory.empty() && ::chdir(start.directory.c_str()) != 0) give_up(Stage::directory);
   errno = 0;
-  if (start.in_child && !start.in_child()) give_up(Step::in_child);
+  if (start.in_child && !start.in_child()) give_up(Stage::in_child);
   // By way of numbers beyond all that are wanted: one may be another's, and dup2 onto itself would keep CLOEXEC.
   // Each of ours is closed after its last use: few may be left.
   for (std::size_t i = 0; i < spare.size(); ++i) {
     const int ours = start.descriptors[i].first;
-    if ((spare[i] = ::fcntl(ours, F_DUPFD_CLOEXEC, last + 1)) < 0) give_up(Step::descriptors);
+    if ((spare[i] = ::fcntl(ours, F_DUPFD_CLOEXEC, last + 1)) < 0) give_up(Stage::descriptors);
     bool is_last = ours > 2;
     for (std::size_t j = i + 1; j < spare.size(); ++j) is_last = is_last && start.descriptors[j].first != ours;
     if (is_last) ::close(ours);
   }
   if (writing.fd <= last && (writing.fd = ::fcntl(writing.fd, F_DUPFD_CLOEXEC, last + 1)) < 0) ::_exit(not_started);
   for (std::size_t i = 0; i < spare.size(); ++i)
-    if (::dup2(spare[i], start.descriptors[i].second) < 0) give_up(Step::descriptors);
+    if (::dup2(spare[i], start.descriptors[i].second) < 0) give_up(Stage::descriptors);
   // Before Linux 5.11 only what lgabench opened itself, with O_CLOEXEC, is closed.
   ::syscall(SYS_close_range, static_cast<unsigned>(last + 1), ~0u, CLOSE_RANGE_CLOEXEC);
   ::execvpe(words[0], words.data(), variables.data());
-  give_up(Step::program);
+  give_up(Stage::program);
   ::_exit(not_started);
 }
 
