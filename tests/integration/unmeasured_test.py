@@ -188,7 +188,7 @@ class Unplayed(case.BesideOneRun):
 
 
 class Empty(case.Case):
-    """A Selection that keeps no object."""
+    """A Selection that keeps no object, a board without an entry."""
 
     def test_select_and_run_say_so(self):
         (self.dir / "mine.json").write_text(json.dumps({"model": "me", "space": "tabletop", "answers": [
@@ -203,6 +203,11 @@ class Empty(case.Case):
         self.assertIn("LGA keeps no object in heart: the target has no texture.\n", done.stdout)
         self.assertIn("LGA keeps no object in heart: the target has no texture.", (self.dir / "run/report.md").read_text())
         self.assertNotIn("keeps no object in red_heart", done.stdout)
+
+    def test_no_entry_is_no_verification(self):
+        (self.dir / "board/entries").mkdir(parents=True)
+        said = self.call("leaderboard", "verify", "--board", "board", "--by", "me", expect=2).stderr
+        self.assertIn("board: no entry that is not withdrawn: nothing was verified", said)
 
 
 if __name__ == "__main__":

@@ -56,8 +56,7 @@ struct ChatOptions {
   std::function<void(const std::string&)> waiting = {};   // told, in a line, what the model waits for; likewise
   std::function<void(bool begins)> in_line = {};          // told where the model waits for another process that asks
   bool any_served = false;                                // as of Cassette::add()
-  bool expects_read =
-      false;  // mean() and hypotheses() throw Unread, not empty; 20 replies that cannot be read are enough
+  bool expects_read = false;  // mean() and hypotheses() throw Unread or Hopeless where they would be empty otherwise
 };
 
 /// The messages of a request, made of a prompt.
@@ -80,8 +79,7 @@ class ChatLanguageModel : public LanguageModel {
   std::vector<bool> answer(const Command& command, const FeatureSpace& space,
                            const std::vector<Question>& questions) override;
   /// Asks one question. If the reply's meaning cannot be read, the model is told why and asked again, twice at most;
-  /// each asking is a query. @throws as answer(), and Unread and Hopeless where the options expect that replies are
-  /// read.
+  /// each asking is a query. @throws as answer(), and Unread or Hopeless if the options expect that replies are read.
   Meaning mean(const Command& command, const FeatureSpace& space) override;
   /// Likewise. Empty, at no cost, where nobody can be asked: there is no client, and the cassette lacks the reply.
   std::vector<Hypothesis> hypotheses(const Command& command, const FeatureSpace& space) override;
