@@ -95,7 +95,7 @@ double check_memory_gib(double asked) {
   return asked > 0 ? asked : std::min(usual, usable_bytes() / gib / 2);
 }
 
-// What a plugin that is no method's declares of how it was compiled.
+// How it was compiled, where that may change results.
 void note_compilation(const PluginInfo& plugin, CheckReport& report) {
   if (plugin.fingerprint.find(";arithmetic=fast") == std::string::npos) return;
   report.note("compilation", "built with -ffast-math (or -Ofast): another compiler or processor may give other results",

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <linux/close_range.h>
+#include <poll.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
@@ -34,10 +35,13 @@ struct Stopped {
   int reason = 0;
 };
 
-// Waits until the program runs, or the process has said why it does not.
+// Waits until the program runs, or the process has said why it does not. Not for long: somebody may stop it before.
 Stopped told_by(const Descriptor& pipe) {
+  constexpr int longest_ms = 2000;
   Stopped stopped;
   ssize_t n = 0;
+  pollfd watched{pipe.fd, POLLIN, 0};
+  if (::poll(&watched, 1, longest_ms) == 0) return stopped;
   while ((n = ::read(pipe.fd, &stopped, sizeof stopped)) < 0 && errno == EINTR) {
   }
   return n == sizeof stopped ? stopped : Stopped();

@@ -26,8 +26,9 @@ struct ProcessStart {
 std::vector<std::string> environment_with(const std::vector<std::string>& set);
 
 /// Starts a process that dies with the thread that started it and holds no descriptors but those named and 0 to 2.
-/// Returns once its program runs. `in_child` runs in a copy of this process: it must take no lock that another thread
-/// may hold. @throws Refused where the system starts no process, or the program cannot be run.
+/// Returns once its program runs, or after two seconds; one that fails later ends with status 127. `in_child` runs in a
+/// copy of this process: it must take no lock that another thread may hold. @throws Refused where the system starts no
+/// process, or the program cannot be run.
 pid_t start_process(const ProcessStart& start);
 
 /// Waits for its end. Returns its status, as waitpid() does.
