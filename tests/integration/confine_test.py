@@ -82,10 +82,10 @@ class Confinement(Case):
             (self.dir / "home" / name).parent.mkdir(exist_ok=True)
             (self.dir / "home" / name).write_text("k")
         self.environment["HOME"] = str(self.dir / "home")
-        words = [f"read+path={self.dir}/home/{name}" for name in (".ssh/id_rsa", ".netrc", "notes.txt", "fixture_probe.so")]
-        found = self.probes(words, plugins="home")
+        names = (".ssh/id_rsa", ".netrc", "notes.txt", "fixture_probe.so")
+        found = self.probes([f"read+path={self.dir}/home/{name}" for name in names], plugins="home")
         self.need("Landlock")
-        self.assertEqual(list(found.values()), ["EACCES", "EACCES", "reached", "reached"])
+        self.assertEqual([found["read", f"{self.dir}/home/{name}"] for name in names], ["EACCES", "EACCES", "reached", "reached"])
         said = self.call(*RUN, "--plugin-path", "home", "--methods", "fixture_probe+how=own_files", "--out", "more").stderr
         self.assertEqual(said.count("fixture_probe.so may read what lies beside it, your home directory"), 1, said)
 
