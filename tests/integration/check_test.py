@@ -51,6 +51,14 @@ class Silent(Asks):
 
     def revise(self, command, selected, demonstrations, services):
         return selected
+
+
+class Unasked(Silent):
+    asks = "accept"
+    options = {"questions": {"default": 0, "min": 0, "help": "to each person", "source": "test"}}
+
+    def revise(self, command, selected, demonstrations, services):
+        return selected
 """
 
 
@@ -110,7 +118,7 @@ class CheckPlugin(Case):
         for method, said in (("Asks", r"asked, at the price of \d*[05] objects shown"), ("Silent", "services.human was not asked")):
             report = json.loads(self.call("check-plugin", f"mine.py:{method}", "--json", "--python", PYTHON).stdout)
             self.assertRegex({one["check"]: one["detail"] for one in report["findings"]}["person"], f"^{said}$")
-        words = ("check-plugin", "mine.py:Silent", "--json", "--python", PYTHON, "--set", "questions=0")
+        words = ("check-plugin", "mine.py:Unasked", "--json", "--python", PYTHON)
         person, = (one for one in json.loads(self.call(*words).stdout)["findings"] if one["check"] == "person")
         self.assertEqual((person["state"], person["detail"]), ("note", "services.human was not asked: questions=0"))
         problems = self.check("mine.py:Asks", "questions=4")

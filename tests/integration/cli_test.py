@@ -125,9 +125,9 @@ class Mistakes(Case):
             (["run", "q1", "--demos", "0"], r"^lgabench: demonstrations: expected 1 or more for lga, whose policy \(regression\) is "
                                             r"trained on them, got 0; policy=point needs none$"),
             (["run", "q1", "--methods", "selected_by:lga", "--demos", "0,5"], r"expected 1 or more for selected_by:lga, whose policy \(heat_map\)"),
-            (["run", "q1", "--episodes", "010"], r"^lgabench: --episodes: expected a whole number from .*, got 010$"),
+            (["run", "q1", "--episodes", "010"], r"^lgabench: --episodes: expected a whole number up to 2147483647, without leading zeros, got 010$"),
             (["run", "q1", "--quiet=maybe"], r"^lgabench: --quiet: expected no value, got maybe$"),
-            (["run", "q1", "--jobs", "0x2"], r"^lgabench: --jobs: expected a whole number from .*, got 0x2$"),
+            (["run", "q1", "--jobs", "0x2"], r"^lgabench: --jobs: expected a whole number up to .*, got 0x2$"),
             (["run", "q1", "--timeout", "0x9"], r"^lgabench: --timeout: expected a number, got 0x9$"),
             (["run", "q1", "--scene-seed", "9223372036854775808"], r"^lgabench: --scene-seed: expected a whole number from .* to 9223372036854775807, got 9223372036854775808$"),
             (["run", "q1", "--scene-seed", "-1"], r"^lgabench: --scene-seed: expected a whole number from 0 to 9223372036854775807, got -1$"),
