@@ -26,7 +26,6 @@ Selection read_made(const JsonReader& reader, const Scenario& scenario, const st
   Selection selection = read_selection(reader.at("selection"), scenario);
   selection.provenance = Provenance::human;
   selection.asked_as = asked_as;
-  constexpr double longest = 1e7;
   selection.cost.human_seconds = reader.at("seconds").number();
   constexpr double most = 1e9;
   if (!(selection.cost.human_seconds > 0 && selection.cost.human_seconds <= most))
