@@ -131,6 +131,7 @@ class NewPlugin(Consumer):
         plugin = self.build("my_method")
         self.assertIn("any_texture", self.lgabench("info", "my_method", "--plugin-path", plugin.parent).stdout)
         checks = self.check(plugin, "--set", "epochs=5")
+        self.assertEqual(checks.pop("bounds of actions"), "note", "after five epochs")
         self.assertEqual(set(checks.values()), {"ok"})
         self.runs("my_method", plugin.parent, "--set", "my_method.epochs=2")
         said = self.lgabench("new-plugin", "my_method", expect=2).stderr
@@ -207,7 +208,8 @@ class NewPlugin(Consumer):
 
     def test_a_perceiver(self):
         plugin = self.build("my_eyes", "--kind", "perceiver")
-        self.assertEqual(set(self.check(plugin).values()), {"ok"})
+        others = {check: state for check, state in self.check(plugin).items() if state != "ok"}
+        self.assertEqual(others, {f"names, {environment}": "note" for environment in ("tabletop", "mobile")}, "it gives all objects one name")
         self.lgabench("run", "pictures", "--preset", "smoke", "--names", "simulator,my_eyes", "--plugin-path", "build", "--scenarios",
                       "heart", "--methods", "human", "--episodes", "2", "--set", "*.policy=centroid", "--out", "run", cwd=self.dir / "my_eyes")
         rows = json.loads((self.dir / "my_eyes/run/summary.json").read_text())["rows"]

@@ -441,7 +441,7 @@ class Forgeries(Case):
 
     def supersede(self, entry, outcome=".", **evidence):
         """By hand: other outcomes in an entry's place, whose files go where leaderboard supersede puts them."""
-        old, before = json.loads((entry / "entry.json").read_text()), entry_hash(entry)
+        old, before = read_entry(entry / "entry.json"), entry_hash(entry)
         kept = self.board / "superseded" / old["id"] / before[:16]
         shutil.copytree(entry, kept)
         (entry / "verifications.jsonl").unlink()

@@ -350,7 +350,7 @@ class Superseding(Board):
         self.assertRegex(done.stdout, r"^agrees .*: 1 of 1 cells bit-identical, 0 of 4 episodes ended differently \(nonce")
         self.assertEqual(done.stderr.splitlines()[-1], "Too few cells to count: nobody vouches for a replay of fewer than 8 (--cells 8)")
         done = self.leaderboard("verify", self.id, "--by", "B. Maintainer", *PLUGIN)
-        self.assertEqual(done.stderr.splitlines()[-1], f"To make it count: lgabench leaderboard vouch {self.id} 2")
+        self.assertEqual(done.stderr.splitlines()[-1], f"To make it count: lgabench leaderboard vouch {self.id} 2 --board board")
         self.leaderboard("vouch", self.id, "2")
         self.leaderboard("build")
         self.assertIn("6 entries, 0 problems", self.leaderboard("check").stdout)

@@ -110,7 +110,7 @@ class Preferences(Case):
         score = ("select", "--suite", "words", "--score", "--scenes", "10")
         rows = [json.loads(line) for line in self.call(*score, "--json").stdout.splitlines()]
         self.assertEqual([row for row in rows if row["asked"] == "hypotheses"],
-                         [{"group": group, "asked": "hypotheses", "commands": 6, "covered": 4} for group in ("preference", "all")])
+                         [{"group": group, "asked": "hypotheses", "commands": 6, "covered": 4, "unanswered": 0} for group in ("preference", "all")])
         said = self.call(*score).stdout
         self.assertIn("hold the truth for 4 of 6 commands, not for words_preference_letter_of_meg, words_preference_plate", said)
 

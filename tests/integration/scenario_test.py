@@ -64,14 +64,14 @@ class OwnScenario(Case):
 
     def test_a_leak_is_not_good(self):
         """Two hearts share their type, so that a policy without the command finds the target in half of the scenes."""
-        left = ("--command", "Bring me the heart left of the bowl.", "--types", "heart", "--which", "left_of", "--of", "bowl")
+        left = ("--command", "Bring me the heart left of the bowl.", "--types", "heart", "--which", "left_of", "--relative-to", "bowl")
         self.new("left", *left)
         checked = self.call("check-scenario", "left.json", "--layout", "continuous").stdout
         self.assertRegex(checked, r"note +test, continuous +the object that shares most with the others is the target in [23]\d of 50 scenes")
         self.assertIn('-> give the arm "near_miss": true, and its objects share alike', checked)
         self.assertRegex(checked, r"\nno problem, \d notes: see above\n$")
         self.new("apart", "--space", "household", "--command", "Bring me the cutlery left of the bowl.", "--types", "fork,spoon,knife",
-                 "--which", "left_of", "--of", "bowl")  # docs/own-scenarios.md
+                 "--which", "left_of", "--relative-to", "bowl")  # docs/own-scenarios.md
         self.assertNotIn("shares most", self.call("check-scenario", "apart.json", "--layout", "continuous").stdout)
 
     def test_a_command_of_each_family_of_words(self):

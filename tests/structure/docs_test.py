@@ -143,7 +143,7 @@ class Pages(unittest.TestCase):
 
     def test_maintainers_read_one_short_page(self):
         page = (SOURCE / "docs/maintaining.md").read_text()
-        self.assertLessEqual(len(page.split()), 600)
+        self.assertLessEqual(len(page.split()), 650)
         for subject in "Hosting", "A release", "A stale number", "A hole in the confinement", "An entry":
             self.assertIn(f"\n## {subject}\n", page)
 
@@ -403,7 +403,7 @@ class Documents(unittest.TestCase):
         sources = [file.read_text() for folder in ("framework", "cmake") for file in (SOURCE / folder).rglob("*")
                    if file.suffix in (".cpp", ".hpp", "") and file.is_file()]
         said = re.sub(r'"\s*\n\s*"', "", "\n".join(sources)).replace('\\"', '"')  # literals that go on in the next line
-        said = re.sub(r"\{[^{}\n]*\}", "…", said) + "No space left on device, Could not resolve host"  # libc's, libcurl's
+        said = re.sub(r"\{[^{}\n]*\}", "…", said) + "No space left on device, Too many open files; Could not resolve host"  # libc's, libcurl's
         missing = []
         for page in "troubleshooting.md", "language-models.md":
             cells = re.findall(r"^\| ((?:`[^`]+`(?:, )?)+) \|", (SOURCE / "docs" / page).read_text(), re.M)

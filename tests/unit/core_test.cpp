@@ -363,7 +363,7 @@ TEST(Scenario, RefusesBadInput) {
   for (const char* name : {"", "a/../../b", "a\n", "a b", "=1"}) {
     Json named = heart();
     named["tests"][0]["arm"] = name;
-    EXPECT_SAYS(refusal(named), "/tests/0/arm: expected a name of letters");
+    EXPECT_SAYS(refusal(named), "/tests/0/arm: expected a name of at most 64 letters");
   }
   json["tests"] = Json::array();
   EXPECT_SAYS(refusal(json), "mine.json: /tests: expected at least one arm");

@@ -470,7 +470,7 @@ TEST(PlayedArms, LeaveTheOthersInTheScenarioUnplayed) {
   const auto refusal = [&](const PlayedArms& played) { return message_of<InputError>([&] { cells(played); }); };
   EXPECT_SAYS(refusal({{{"sensor", {}}}, {}}), "--axes: no axis \"sensor\" (did you mean \"sensor_noise\"?)");
   EXPECT_SAYS(refusal({{{"all", {5}}}, {}}), "--axes: all has no level 5 here, expected one of: 1, 2, 3, 4");
-  EXPECT_SAYS(refusal({{}, {"moon"}}), "--arms: no arm \"moon\", expected one of: control, ");
+  EXPECT_SAYS(refusal({{}, {"moon"}}), "--arms: no arm \"moon\", expected one of 65, such as: control, ");
 }
 
 TEST(Names, AreASettingOfMethodsAloneAndNameTheRow) {
@@ -684,7 +684,7 @@ TEST_F(RunDirectories, RefusesWhatIsNotItsOwn) {
     EXPECT_SAYS(message_of<InputError>([&] { RunDirectory(path / "other", run_of({k}), existing); }), "not a run");
   }
   EXPECT_SAYS(message_of<InputError>([&] { RunDirectory(path / "other/letter.txt/run", run_of({}), Existing::same); }),
-              "Not a directory");
+              "letter.txt is not a directory");
   EXPECT_EQ(read_file(path / "other/letter.txt"), "kept");
 }
 

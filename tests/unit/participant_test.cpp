@@ -80,7 +80,7 @@ TEST_F(ParticipantFile, IsRefusedWithThePlace) {
            {"/license", 3, "/license"},
            {"/participant", "", "/participant: expected a pseudonym"},
            {"/name", "a real name", "unknown member \"name\""},
-           {"/answers/0/scenario", "hart", "/answers/0/scenario: expected one of "},
+           {"/answers/0/scenario", "hart", "/answers/0/scenario: no scenario \"hart\""},
            {"/answers/0/command", "Bring me the red hart.", "expected one of \"Bring me the red heart.\""},
            {"/answers/0/specified/seconds", 0, "/answers/0/specified/seconds: expected more than 0"},
            {"/answers/0/specified/selection/target/textures/0", "redd",

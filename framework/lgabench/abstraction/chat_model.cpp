@@ -113,7 +113,7 @@ void ChatLanguageModel::ask(const std::vector<Request>& requests, const std::str
   const std::size_t wanted = std::min(requests.size(), static_cast<std::size_t>(std::max(options_.concurrency, 1)));
   working = wanted;
   std::vector<std::thread> threads = start_helpers(wanted, work);
-  if (threads.empty()) throw Refused("no thread can be started that asks", EAGAIN);
+  if (threads.empty() && wanted > 0) throw Refused("no thread can be started that asks", EAGAIN);
   {
     std::unique_lock lock(mutex);
     working -= wanted - threads.size();

@@ -267,7 +267,7 @@ void add_verify(CLI::App& app, int& exit) {
   verb->footer(
       "Example: lgabench verify runs/q1 --sample 5\nverify calls each cell bit-identical, same outcomes, other "
       "outcomes, or differs. With the recorded build and data the bytes must be the same on the recorded processor, "
-      "and with the methods that lgabench ships on every processor with FMA. If the record names others, the verdict "
+      "and with the shipped methods on every processor with FMA. If the record names others, the verdict "
       "over all cells is \"agrees\" if at most 1 % of the episodes ended differently (of fewer than 1,000, ten but at "
       "most 4 %), "
       "and no row has more cells that are worse, or better, than chance allows.\n"
