@@ -105,7 +105,7 @@ class BadInput(Case):
     def test_output_directory(self):
         (self.dir / "file").write_text("kept")
         self.refused("run", "q1", "--limit", "1", "--out", "file/below", says=r"file/below: .*file is not a directory")
-        self.refused("run", "q1", "--limit", "1", "--out", "file", says=r"file: .*Not a directory")
+        self.refused("run", "q1", "--limit", "1", "--out", "file", says=r"file: .*file is not a directory")
         (self.dir / "mine").mkdir()
         (self.dir / "mine" / "thesis.txt").write_text("kept")
         for flags in ([], ["--resume"], ["--fresh"]):
