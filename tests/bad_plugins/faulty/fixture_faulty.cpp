@@ -79,10 +79,12 @@ void change_surroundings(const std::string& how) {
     for (int signal = 1; signal < 32; ++signal) std::signal(signal, SIG_IGN);
 }
 
+void fail_inside() { throw std::runtime_error("inside noexcept"); }
+
 void misbehave(const std::string& how) {
   change_surroundings(how);
   if (how == "at_quick_exit") std::quick_exit(3);
-  if (how == "noexcept") []() noexcept { throw std::runtime_error("inside noexcept"); }();
+  if (how == "noexcept") []() noexcept { fail_inside(); }();
   if (how == "recursion") std::printf("%d", deeper(0));
   if (how == "kill") ::kill(::getpid(), SIGKILL);
   if (how == "close_socket") ::close(3);
