@@ -2,18 +2,12 @@
 import os
 import pathlib
 import shutil
-import signal
 import sys
 
 from lgabench_method import installed
 
 PROGRAM = pathlib.Path(__file__).with_name("_install") / "bin" / "lgabench"
 TAKES_PYTHON = ("run", "check-plugin", "verify", "list", "info")
-
-
-def ending(status: int) -> str:
-    """How a process ended, of whose exit status subprocess says this."""
-    return f"signal {-status} ({signal.strsignal(-status)})" if status < 0 else f"exit status {status}"
 
 
 def typed() -> str:

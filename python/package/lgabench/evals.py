@@ -17,7 +17,8 @@ import tempfile
 import warnings
 from typing import Any, Callable, Iterable, Iterator, Mapping, Sequence
 
-from lgabench.__main__ import PROGRAM, ending
+from lgabench.__main__ import PROGRAM
+from lgabench.kept import ending
 
 FORMS = ("flat", "structured")  # yes or no of each feature; what the command means
 METRICS = ("scenes_exact", "exact_sets", "precision", "recall", "answered")

@@ -4,6 +4,7 @@ from __future__ import annotations
 import json
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 from types import TracebackType
@@ -12,12 +13,16 @@ from typing import Any, Optional, Sequence, Union
 import numpy
 import numpy.typing
 
-from lgabench.__main__ import ending
 from lgabench_method import Observation, Selection, installed
 from lgabench_method import values as _values
 
 Path = Union[str, os.PathLike[str]]
 PROGRAM = pathlib.Path(__file__).with_name("_install") / "bin" / "lgabench-worker"
+
+
+def ending(status: int) -> str:
+    """How a process ended, of whose exit status subprocess says this."""
+    return f"signal {-status} ({signal.strsignal(-status)})" if status < 0 else f"exit status {status}"
 
 
 class Policy:
