@@ -273,7 +273,7 @@ class WholePageInABrowser(InABrowser):
 
     def test_it_is_short(self):
         self.open(folded=True)
-        self.assertLess(self.script("return document.documentElement.scrollHeight"), 6000)
+        self.assertLess(self.script("return document.documentElement.scrollHeight"), 6500)  # no table hides rows in a box of its own
 
     def test_tables_are_tables_whose_heads_and_names_stay_in_view(self):
         stays = """return [...document.querySelectorAll("main .frame")].filter((frame) => {
