@@ -23,7 +23,7 @@ function(lgabench_environment name)
   target_link_libraries(lgabench_${name} PUBLIC lgabench_core)
   target_include_directories(lgabench_${name} PUBLIC ${PROJECT_SOURCE_DIR}/envs)  # it is not installed for others to link
   install(TARGETS lgabench_${name})
-  foreach(program lgabench lgabench-worker lgabench_pages)
+  foreach(program ${lgabench_programs})
     add_dependencies(${program} lgabench_${name})
   endforeach()
   set_property(GLOBAL APPEND PROPERTY lgabench_environments lgabench_${name})  # whatever reads scenarios needs them all
@@ -102,12 +102,15 @@ function(lgabench_link_data)
     cmake_path(GET directory PARENT_PATH name)
     list(APPEND tables readers/${name}:envs/${directory})
   endforeach()
+  set(of_programs)
+  if(LGABENCH_PROGRAMS)
+    set(of_programs page:programs/lgabench/document/page templates:programs/lgabench/cli/templates
+                    study:programs/lgabench/study/pages protocols:programs/lgabench/study/protocols)
+  endif()
   foreach(pair ${tables} answers:framework/lgabench/abstraction/answers disputed:framework/lgabench/abstraction/disputed
                prompts:framework/lgabench/abstraction/prompts
                embeddings:framework/lgabench/learning/embeddings paper:results/paper measured:results/measured formats:docs/formats
-               page:framework/lgabench/document/page templates:framework/lgabench/cli/templates starters:examples
-               study:framework/lgabench/study/pages protocols:framework/lgabench/study/protocols
-               persons:framework/lgabench/drawn/persons python:python fetch:cmake/fetch)
+               starters:examples ${of_programs} persons:framework/lgabench/drawn/persons python:python fetch:cmake/fetch)
     string(REPLACE ":" ";" pair ${pair})
     list(GET pair 0 name)
     list(GET pair 1 source)
@@ -122,7 +125,7 @@ function(lgabench_link_data)
           ${PROJECT_SOURCE_DIR}/SECURITY.md ${PROJECT_SOURCE_DIR}/CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
   # What a packed leaderboard has beside its entries.
   file(MAKE_DIRECTORY ${share}/archive)
-  foreach(source LICENSE CITATION.cff framework/lgabench/leaderboard/archive/README.md)
+  foreach(source LICENSE CITATION.cff programs/lgabench/leaderboard/archive/README.md)
     cmake_path(GET source FILENAME name)
     file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${source} ${share}/archive/${name} SYMBOLIC)
     install(FILES ${PROJECT_SOURCE_DIR}/${source} DESTINATION ${CMAKE_INSTALL_DATADIR}/lgabench/archive)

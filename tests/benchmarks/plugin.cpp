@@ -83,11 +83,11 @@ void demonstrations(benchmark::State& state) {
   const Scenario scenario = load_scenario("heart");
   std::vector<Demonstration> all;
   for (int i = 0; i < 50; ++i) all.push_back({{}, {{seen(training_scene(scenario, i)), tabletop::TwoPoses{}}}});
-  const protocol::Layout layout{tabletop::Workspace::picture, tabletop::two_poses()};
+  const host::Layout layout{tabletop::Workspace::picture, tabletop::two_poses()};
   std::size_t bytes = 0;
   for (auto _ : state) {
-    const protocol::DemonstrationFile packed = protocol::pack(layout, all);
-    benchmark::DoNotOptimize(protocol::unpack(layout, JsonReader(packed.header, "learn"), packed.file));
+    const host::DemonstrationFile packed = host::pack(layout, all);
+    benchmark::DoNotOptimize(host::unpack(layout, JsonReader(packed.header, "learn"), packed.file));
     bytes = packed.size;
   }
   state.counters["bytes"] = static_cast<double>(bytes);

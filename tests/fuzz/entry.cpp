@@ -8,7 +8,7 @@
 #include <lgabench/leaderboard/said.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 
-#include "../unit/leaderboard_board.hpp"
+#include "../unit/programs/leaderboard_board.hpp"
 #include "fuzz.hpp"
 
 namespace {

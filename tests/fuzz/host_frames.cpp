@@ -18,9 +18,9 @@ const PluginInfo& curious() {
   return plugin;
 }
 
-const protocol::Layout& layout() {
+const host::Layout& layout() {
   static const EnvironmentType& tabletop = find_environment("tabletop");
-  static const protocol::Layout of_it{tabletop.picture_size(), tabletop.action_space()};
+  static const host::Layout of_it{tabletop.picture_size(), tabletop.action_space()};
   return of_it;
 }
 
@@ -30,7 +30,7 @@ Json hello() {
             {"method", {{"file", curious().file.string()}, {"sha256", curious().sha256}}},
             {"options", Json::object()},
             {"seed", 0}};
-  json.update(protocol::to_json(layout()));
+  json.update(host::to_json(layout()));
   return json;
 }
 
@@ -38,7 +38,7 @@ Json hello() {
 void send(Channel& worker, const Frame& frame) {
   if (frame.header.value("type", Json()) != "learn") return worker.send(frame.header, frame.payload);
   const std::size_t pictures = 4 * layout().picture.pixels();  // rgb and ids
-  protocol::SharedMemory file(pictures + fuzz::most_said);
+  host::SharedMemory file(pictures + fuzz::most_said);
   std::copy(frame.payload.begin(), frame.payload.end(), file.data() + pictures);
   worker.send(frame.header, {}, &file.file());
 }
@@ -50,7 +50,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   auto [ours, theirs] = fuzz::ends();
   {
     Channel worker = fuzz::channel_of(std::move(theirs));
-    const protocol::SharedMemory observation(protocol::observation_bytes(layout().picture));
+    const host::SharedMemory observation(host::observation_bytes(layout().picture));
     const std::vector<Frame> frames = fuzz::frames_of(fuzz::text_of(data, size));
     Json first = hello();
     if (!frames.empty()) first.merge_patch(frames.front().header);

@@ -4,7 +4,7 @@
 #include <lgabench/leaderboard/pages.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 
-#include "../unit/leaderboard_board.hpp"
+#include "../unit/programs/leaderboard_board.hpp"
 #include "fuzz.hpp"
 
 namespace {

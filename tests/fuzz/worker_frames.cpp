@@ -30,13 +30,13 @@ void read(const Frame& frame, AnswerLedger& asked, Channel& channel) {
   const JsonReader reader(frame.header, "frame");
   const std::string type = frame.type();
   if (type == "needs") {
-    protocol::read_needs(reader);
+    host::read_needs(reader);
   } else if (type == "selection") {
-    canonical(to_json(asked.account(protocol::read_selection(reader.at("selection")))));
+    canonical(to_json(asked.account(host::read_selection(reader.at("selection")))));
   } else if (type == "action") {
-    protocol::to_bytes(protocol::read_action(frame.payload, 12));
+    host::to_bytes(host::read_action(frame.payload, 12));
   } else if (type == "log") {
-    protocol::read_log(frame);
+    host::read_log(frame);
   } else {
     asked.answer(frame, channel);
   }

@@ -16,7 +16,7 @@ PLUGIN = ["--plugin-path", FIXTURES / "good"]
 # Cells without training, for milliseconds.
 RUN = ["run", "q1", "--scenarios", "heart", "--methods", "fixture_constant", *PLUGIN, "--demos", "10,20", "--seeds", "0:2",
        "--episodes", "2", "--no-reference"]
-PAGES = BUILD / "framework/lgabench/cli"
+PAGES = BUILD / "programs/lgabench/cli"
 
 
 class Help(Case):

@@ -7,7 +7,7 @@ import unittest
 from pathlib import Path
 
 SOURCE = Path(sys.argv.pop())
-CSS = (SOURCE / "framework/lgabench/document/page/page.css").read_text()
+CSS = (SOURCE / "programs/lgabench/document/page/page.css").read_text()
 
 
 def rgb(colour):

@@ -327,7 +327,7 @@ class Documents(unittest.TestCase):
         """And sections of docs/protocol.md; no other document, by a name in capitals."""
         sections = re.findall(r"^## (\d)\. ", (SOURCE / "docs/protocol.md").read_text(), re.M)
         wrong = []
-        for folder in "framework", "envs", "plugins", "baselines", "examples", "python", "tests", "cmake":
+        for folder in "framework", "programs", "envs", "plugins", "baselines", "examples", "python", "tests", "cmake":
             for file in (SOURCE / folder).rglob("*"):
                 if file.suffix not in (".cpp", ".hpp", ".py", ".in", ".cmake", ".txt") or file.samefile(__file__):
                     continue
@@ -369,7 +369,7 @@ class Documents(unittest.TestCase):
     def test_files_that_documents_name_are_there(self):
         wrong = []
         for page in PAGES:
-            for name in re.findall(r"`((?:framework|envs|plugins|baselines|examples|tests|cmake|results|python)/[^`\s]*)`", page.read_text()):
+            for name in re.findall(r"`((?:framework|programs|envs|plugins|baselines|examples|tests|cmake|results|python)/[^`\s]*)`", page.read_text()):
                 general = re.sub(r"\b[A-Z]+\b", "*", re.sub(r"#.*", "", name))  # envs/ID/suites: any of them
                 if page.name not in ("CHANGELOG.md", "decisions.md") and not any(SOURCE.glob(general)):
                     wrong.append(f"{page.relative_to(SOURCE)}: {name}")
@@ -400,7 +400,7 @@ class Documents(unittest.TestCase):
 
     def test_quoted_messages_are_the_programs(self):
         """First column of the tables of troubles, "…" for what fills a message in: its other parts stand in a source."""
-        sources = [file.read_text() for folder in ("framework", "cmake") for file in (SOURCE / folder).rglob("*")
+        sources = [file.read_text() for folder in ("framework", "programs", "cmake") for file in (SOURCE / folder).rglob("*")
                    if file.suffix in (".cpp", ".hpp", "") and file.is_file()]
         said = re.sub(r'"\s*\n\s*"', "", "\n".join(sources)).replace('\\"', '"')  # literals that go on in the next line
         said = re.sub(r"\{[^{}\n]*\}", "…", said) + "No space left on device, Too many open files; Could not resolve host"  # libc's, libcurl's

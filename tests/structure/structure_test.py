@@ -11,6 +11,8 @@ import unittest
 
 SOURCE, BUILD = (pathlib.Path(p) for p in sys.argv[1:3])
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.M)
+LIBRARY = ["abstraction", "cell", "core", "drawn", "harness", "host", "job", "learning", "plugin", "record", "statistics", "worker"]
+PROGRAMS = ["cli", "document", "http", "leaderboard", "report", "study"]
 ENVIRONMENTS = sorted(file.parent.name for file in (SOURCE / "envs").glob("*/CMakeLists.txt")
                       if "lgabench_environment(" in file.read_text())
 
@@ -20,6 +22,10 @@ def includes(folder):
     for file in sorted((SOURCE / folder).rglob("*.[ch]pp")):
         for path in INCLUDE.findall(file.read_text()):
             yield file.relative_to(SOURCE), path
+
+
+def rooms(top):
+    return sorted(folder.name for folder in (SOURCE / top / "lgabench").iterdir() if folder.is_dir())
 
 
 def needed(file):
@@ -50,9 +56,26 @@ class IncludeGraph(unittest.TestCase):
         self.assertEqual(found, [], f"{folder} must not include {pattern}")
 
     def test_folders_were_found(self):
-        for folder in ("core", "plugin", "abstraction", "learning", "host", "record", "job", "cell", "harness", "statistics", "document", "report", "http",
-                       "study", "drawn", "leaderboard", "cli", "seeing"):
+        for folder in LIBRARY:
             self.assertTrue(list(includes(f"framework/lgabench/{folder}")), folder)
+        for folder in PROGRAMS:
+            self.assertTrue(list(includes(f"programs/lgabench/{folder}")), folder)
+        self.assertEqual(rooms("framework"), LIBRARY)
+        self.assertEqual(rooms("programs"), PROGRAMS)
+
+    def test_the_library_knows_no_program(self):
+        for folder in ("framework", "envs", "plugins", "baselines", "examples", "python"):
+            self.forbid(folder, rf"lgabench/({'|'.join(PROGRAMS)})/")
+
+    def test_a_namespace_is_a_folder(self):
+        """Rooms whose values are everybody's are in lgabench itself."""
+        found = set()
+        for top in ("framework", "programs"):
+            for file in sorted((SOURCE / top).rglob("*.[ch]pp")):
+                for name in re.findall(r"^namespace lgabench::(\w+)", file.read_text(), re.M):
+                    found.add((file.parent.name, name))
+        self.assertIn(("statistics", "statistics"), found)
+        self.assertEqual({(folder, name) for folder, name in found if folder != name}, set())
 
     def test_core_knows_nothing_above_it(self):
         self.forbid("framework/lgabench/core", r"lgabench/(?!core/)|torch|ATen|opencv|boost|mujoco")
@@ -68,33 +91,39 @@ class IncludeGraph(unittest.TestCase):
 
     def test_torch_only_in_learning_sources(self):
         for folder in ("framework/lgabench/core", "framework/lgabench/plugin", "framework/lgabench/abstraction",
-                       "framework/lgabench/job", "framework/lgabench/cell", "framework/lgabench/harness", "framework/lgabench/cli", "envs"):
+                       "framework/lgabench/job", "framework/lgabench/cell", "framework/lgabench/harness", "framework/lgabench/worker", "programs", "envs"):
             self.forbid(folder, r"torch|ATen|c10")
         headers = [(str(f), p) for f, p in includes("framework/lgabench/learning")
                    if f.suffix == ".hpp" and re.match(r"torch/torch\.h", p)]
         torch_learner = "framework/lgabench/learning/torch_learner.hpp"  # for authors of networks, who link LibTorch themselves
         self.assertEqual(headers, [(torch_learner, "torch/torch.h")], "torch.h takes 13 s a file: sources only")
-        self.forbid("framework", r"lgabench/learning/torch_learner")
+        for top in ("framework", "programs"):
+            self.forbid(top, r"lgabench/learning/torch_learner")
 
     def test_a_reader_of_names_knows_core_and_abstraction(self):
-        self.forbid("framework/lgabench/seeing", r"lgabench/(?!core/|abstraction/|seeing/)|torch|mujoco")
-        for folder in ("job", "cell", "harness", "cli", "host"):
-            self.forbid(f"framework/lgabench/{folder}", r"lgabench/seeing/|opencv")
+        self.forbid("plugins/readers", r"lgabench/(?!core/|abstraction/)|torch|mujoco")
+        for folder in ("job", "cell", "harness", "worker", "host"):
+            self.forbid(f"framework/lgabench/{folder}", r"readers/|opencv")
+        self.forbid("programs", r"readers/|opencv")
 
     def test_engines_stay_in_their_plugins(self):
-        for folder in ("framework", "envs/common", *(f"envs/{id}" for id in ENVIRONMENTS), "plugins", "baselines"):
+        for folder in ("framework", "programs", "envs/common", *(f"envs/{id}" for id in ENVIRONMENTS), "plugins", "baselines"):
             self.forbid(folder, r"mujoco/|bullet/|btBullet")
         self.forbid("envs/bullet", r"mujoco/")
         self.forbid("envs/mujoco", r"bullet/|btBullet")
         self.forbid("examples", rf"mujoco/|bullet/|btBullet|({'|'.join(ENVIRONMENTS)}|common)/")
 
-    def test_the_framework_names_no_environment(self):
-        self.forbid("framework", rf"({'|'.join(ENVIRONMENTS)}|common)/")
+    def test_framework_and_programs_name_no_environment(self):
+        names = re.compile(rf"\b({'|'.join(ENVIRONMENTS)})\b")
+        for top in ("framework", "programs"):
+            self.forbid(top, rf"({'|'.join(ENVIRONMENTS)}|common)/")
+            self.assertEqual([str(file.relative_to(SOURCE)) for file in sorted((SOURCE / top).rglob("*.cpp"))
+                              if names.search(file.read_text())], [])
 
     def test_the_framework_knows_no_word_of_the_tabletops(self):
         words = re.compile(r"^[^/\n]*\b(Workspace|TwoPoses|angle_rad|pose[01])\b", re.M)
         found = [(str(file.relative_to(SOURCE)), words.findall(file.read_text()))
-                 for file in sorted((SOURCE / "framework").rglob("*.[ch]pp"))]
+                 for top in ("framework", "programs") for file in sorted((SOURCE / top).rglob("*.[ch]pp"))]
         self.assertEqual([(file, all_of_it) for file, all_of_it in found if all_of_it], [])
 
     def test_environments_share_the_common_parts_alone(self):
@@ -106,9 +135,9 @@ class IncludeGraph(unittest.TestCase):
 
     def test_a_run_and_its_cells_share_jobs_alone(self):
         self.forbid("framework/lgabench/job", r"lgabench/(?!core/|plugin/|abstraction/|record/|job/)")
-        self.forbid("framework/lgabench/harness", r"lgabench/(cell|statistics|document|report|leaderboard|cli)/")
-        self.forbid("framework/lgabench/leaderboard", r"lgabench/(cell|report|cli)/")
-        self.forbid("framework/lgabench/cell", r"lgabench/(harness|statistics|document|report|cli)/")
+        self.forbid("framework/lgabench/harness", r"lgabench/(cell|statistics|worker)/")
+        self.forbid("programs/lgabench/leaderboard", r"lgabench/(cell|report|cli)/")
+        self.forbid("framework/lgabench/cell", r"lgabench/(harness|statistics|worker)/")
 
     def test_records_know_core_and_abstraction(self):
         self.forbid("framework/lgabench/record", r"lgabench/(?!core/|abstraction/|record/)|torch|opencv")
@@ -116,22 +145,22 @@ class IncludeGraph(unittest.TestCase):
     def test_a_file_of_a_run_is_named_in_its_record_alone(self):
         names = re.compile(r'"(run\.json|cell\.json|selection\.json|training\.jsonl|episodes\.jsonl|timing\.json|status\.json|log\.txt)"')
         found = {str(file.relative_to(SOURCE)): names.findall(file.read_text())
-                 for file in sorted((SOURCE / "framework").rglob("*.[ch]pp")) if file.parent.name != "record"}
+                 for top in ("framework", "programs") for file in sorted((SOURCE / top).rglob("*.[ch]pp")) if file.parent.name != "record"}
         self.assertEqual({file: all_of_it for file, all_of_it in found.items() if all_of_it}, {})
 
     def test_numbers_know_no_document_and_documents_no_number(self):
         self.forbid("framework/lgabench/statistics", r"lgabench/(?!core/|plugin/|abstraction/|record/|job/|statistics/)|torch|ATen|c10|opencv")
-        self.forbid("framework/lgabench/document", r"lgabench/(?!core/|record/layout|statistics/names|document/)|torch|ATen|c10|opencv|boost")
-        self.forbid("framework/lgabench/report", r"lgabench/(?!core/|plugin/|abstraction/|record/|job/|statistics/|document/|report/)|torch|ATen|c10|opencv|boost")
+        self.forbid("programs/lgabench/document", r"lgabench/(?!core/|record/layout|statistics/names|document/)|torch|ATen|c10|opencv|boost")
+        self.forbid("programs/lgabench/report", r"lgabench/(?!core/|plugin/|abstraction/|record/|job/|statistics/|document/|report/)|torch|ATen|c10|opencv|boost")
 
     def test_the_study_knows_core_abstraction_records_numbers_and_documents(self):
-        self.forbid("framework/lgabench/study", r"lgabench/(?!core/|abstraction/|record/|statistics/|document/|http/|study/)|torch|opencv")
+        self.forbid("programs/lgabench/study", r"lgabench/(?!core/|abstraction/|record/|statistics/|document/|http/|study/)|torch|opencv")
 
     def test_a_server_knows_core_alone(self):
-        self.forbid("framework/lgabench/http", r"lgabench/(?!core/|http/)|torch|opencv")
+        self.forbid("programs/lgabench/http", r"lgabench/(?!core/|http/)|torch|opencv")
 
     def test_httplib_is_where_its_limits_are(self):
-        found = {path.parts[2] for path, included in includes("framework") if included == "httplib.h"}
+        found = {path.parts[2] for path, included in includes("programs") if included == "httplib.h"}
         self.assertEqual(found - {"study"}, {"http"})
 
     def test_drawn_commands_know_core_and_abstraction(self):
@@ -141,8 +170,8 @@ class IncludeGraph(unittest.TestCase):
         """The grammar of answers, whose test scenes, and names of what a report writes."""
         for words, file in ((r'"cassette:"|"openai:?"', "answer_source"), (r'"per_seed"', "test_scenes"),
                             (r'"(?:summary\.(?:json|csv)|report\.(?:md|html)|episodes\.csv)"', "layout")):
-            found = {file.relative_to(SOURCE / "framework/lgabench").with_suffix("") for file in
-                     (SOURCE / "framework").rglob("*.[ch]pp") if re.search(words, file.read_text())}
+            found = {pathlib.Path(*path.relative_to(SOURCE).with_suffix("").parts[2:]) for top in ("framework", "programs")
+                     for path in (SOURCE / top).rglob("*.[ch]pp") if re.search(words, path.read_text())}
             self.assertEqual(found, {pathlib.Path("record", file)}, words)
 
 

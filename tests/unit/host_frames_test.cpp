@@ -106,19 +106,19 @@ TEST(Frames, over_the_limits_are_not_sent) {
 
 TEST(Frames, carry_a_file_that_nobody_can_write_to) {
   Ends ends;
-  protocol::SharedMemory memory(4096);
+  host::SharedMemory memory(4096);
   memory.data()[7] = 42;
   Channel sender(std::move(ends.raw), [](short) {});
   sender.send({{"type", "hello"}}, {}, &memory.file());
   const std::optional<Frame> frame = ends.channel->receive();
   ASSERT_TRUE(frame);
-  const protocol::SharedMemory read(frame->file, 4096);
+  const host::SharedMemory read(frame->file, 4096);
   EXPECT_EQ(read.data()[7], 42);
   memory.data()[7] = 43;
   EXPECT_EQ(read.data()[7], 43);
   EXPECT_EQ(::mmap(nullptr, 4096, PROT_WRITE, MAP_SHARED, frame->file.fd, 0), MAP_FAILED);
   EXPECT_LT(::pwrite(frame->file.fd, "x", 1, 0), 0);
-  EXPECT_SAYS(message_of<InputError>([&] { protocol::SharedMemory(frame->file, 4097); }), "4097");
+  EXPECT_SAYS(message_of<InputError>([&] { host::SharedMemory(frame->file, 4097); }), "4097");
 }
 
 std::size_t open_descriptors() {
@@ -148,18 +148,18 @@ TEST(Frames, leave_no_descriptor_behind_whatever_a_peer_attaches) {
 TEST(Messages, actions_keep_what_is_no_number) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   const Action action{.1, nan, infinity, -0.0, 1e-320};
-  const Action back = protocol::read_action(protocol::to_bytes(action), 5);
+  const Action back = host::read_action(host::to_bytes(action), 5);
   EXPECT_TRUE(std::isnan(back[1]));
   EXPECT_EQ(back[2], infinity);
   EXPECT_TRUE(std::signbit(back[3]));
-  EXPECT_EQ(protocol::to_bytes(back), protocol::to_bytes(action));
-  EXPECT_SAYS(message_of<InputError>([] { protocol::read_action("short", 12); }), "expected 96 bytes, 12 doubles");
+  EXPECT_EQ(host::to_bytes(back), host::to_bytes(action));
+  EXPECT_SAYS(message_of<InputError>([] { host::read_action("short", 12); }), "expected 96 bytes, 12 doubles");
 }
 
 TEST(Messages, a_log_arrives_as_it_was_reported) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const Frame frame = protocol::log_frame({{10, 40, .1}, {20, 80, nan}});
-  const auto read = protocol::read_log(frame);
+  const Frame frame = host::log_frame({{10, 40, .1}, {20, 80, nan}});
+  const auto read = host::read_log(frame);
   ASSERT_EQ(read.size(), 2u);
   EXPECT_EQ(read[0].epochs, 10);
   EXPECT_EQ(read[0].steps, 40);
@@ -168,14 +168,14 @@ TEST(Messages, a_log_arrives_as_it_was_reported) {
   EXPECT_TRUE(std::isnan(read[1].loss));
 
   const auto refusal = [](const Json& header, const std::string& payload) {
-    return message_of<InputError>([&] { protocol::read_log({header, payload}); });
+    return message_of<InputError>([&] { host::read_log({header, payload}); });
   };
   EXPECT_SAYS(refusal({{"epochs", {1, 2}}, {"steps", {1}}}, frame.payload), "/steps: expected as many as epochs");
   EXPECT_SAYS(refusal({{"epochs", {1}}, {"steps", {1}}}, frame.payload), "a double for each epoch");
   EXPECT_SAYS(refusal({{"epochs", {-1}}, {"steps", {1}}}, std::string(8, 0)), "/epochs/0");
 
-  const Frame curves = protocol::log_frame({{1, 4, .1, {{"validation", .2}, {"picked", nan}}}, {2, 8, .05}});
-  const auto with = protocol::read_log(curves);
+  const Frame curves = host::log_frame({{1, 4, .1, {{"validation", .2}, {"picked", nan}}}, {2, 8, .05}});
+  const auto with = host::read_log(curves);
   ASSERT_EQ(with.size(), 2u);
   ASSERT_EQ(with[0].curves.size(), 2u);
   EXPECT_EQ(with[0].curves[0], std::pair(std::string("validation"), .2));
@@ -188,7 +188,7 @@ TEST(Messages, a_log_arrives_as_it_was_reported) {
 }
 
 // No environment's that there is.
-const protocol::Layout layout{{30, 40}, {{{"u", "", 0, 1}, {"angle", "", -1, 1}}, {}, {}}};
+const host::Layout layout{{30, 40}, {{{"u", "", 0, 1}, {"angle", "", -1, 1}}, {}, {}}};
 
 Observation observation(std::uint8_t colour) {
   Observation o;
@@ -216,32 +216,32 @@ TEST(Messages, demonstrations_arrive_as_they_were_packed) {
       {{"Bring me the heart.", selection}, {{observation(1), {.3, -1}}, {observation(2), {0, 0}}}},
       {{"none", {}}, {}},
       {{"other", {}}, {{observation(3), {1, .5}}}}};
-  const protocol::DemonstrationFile packed = protocol::pack(layout, given);
+  const host::DemonstrationFile packed = host::pack(layout, given);
   const Json header = Json::parse(packed.header.dump());
-  const auto read = protocol::unpack(layout, JsonReader(header, "learn"), packed.file);
+  const auto read = host::unpack(layout, JsonReader(header, "learn"), packed.file);
   ASSERT_EQ(read.size(), given.size());
   for (std::size_t d = 0; d < given.size(); ++d) {
     EXPECT_EQ(read[d].instruction.utterance, given[d].instruction.utterance);
-    EXPECT_EQ(protocol::told(read[d].instruction.selection), protocol::told(given[d].instruction.selection));
+    EXPECT_EQ(host::told(read[d].instruction.selection), host::told(given[d].instruction.selection));
     ASSERT_EQ(read[d].steps.size(), given[d].steps.size());
     for (std::size_t s = 0; s < given[d].steps.size(); ++s) {
       const Step &a = read[d].steps[s], &b = given[d].steps[s];
       EXPECT_EQ(a.observation.rgb, b.observation.rgb);
       EXPECT_EQ(a.observation.ids, b.observation.ids);
-      EXPECT_EQ(protocol::instances_json(a.observation), protocol::instances_json(b.observation));
-      EXPECT_EQ(protocol::to_bytes(a.label), protocol::to_bytes(b.label));
+      EXPECT_EQ(host::instances_json(a.observation), host::instances_json(b.observation));
+      EXPECT_EQ(host::to_bytes(a.label), host::to_bytes(b.label));
     }
   }
   Json beyond = header;
   beyond["arrays"]["ids"]["offset"] = packed.size;
-  EXPECT_SAYS(message_of<InputError>([&] { protocol::unpack(layout, JsonReader(beyond, "learn"), packed.file); }),
+  EXPECT_SAYS(message_of<InputError>([&] { host::unpack(layout, JsonReader(beyond, "learn"), packed.file); }),
               "an array within the file");
 }
 
 TEST(Messages, shadows_arrive_where_every_step_has_them) {
   const auto arrive = [](const std::vector<Demonstration>& given) {
-    const protocol::DemonstrationFile packed = protocol::pack(layout, given);
-    return protocol::unpack(layout, JsonReader(packed.header, "learn"), packed.file);
+    const host::DemonstrationFile packed = host::pack(layout, given);
+    return host::unpack(layout, JsonReader(packed.header, "learn"), packed.file);
   };
   const Step one{shaded(1), {.3, -1}}, other{shaded(2), {0, 0}}, plain{observation(3), {0, 0}};
   const auto all = arrive({{{"a", {}}, {one}}, {{"b", {}}, {other}}});
@@ -250,45 +250,45 @@ TEST(Messages, shadows_arrive_where_every_step_has_them) {
   EXPECT_NE(one.observation.shadows, other.observation.shadows);
   for (const Demonstration& d : arrive({{{"a", {}}, {one, plain}}}))
     EXPECT_TRUE(d.steps[0].observation.shadows.empty());
-  protocol::DemonstrationFile packed = protocol::pack(layout, {{{"a", {}}, {one}}});
+  host::DemonstrationFile packed = host::pack(layout, {{{"a", {}}, {one}}});
   packed.header["arrays"]["shadows"]["shape"] = {1, 1, 1};
   EXPECT_SAYS(
-      message_of<InputError>([&] { protocol::unpack(layout, JsonReader(packed.header, "learn"), packed.file); }),
+      message_of<InputError>([&] { host::unpack(layout, JsonReader(packed.header, "learn"), packed.file); }),
       "an array of the shape of ids");
 }
 
 TEST(Messages, an_observation_arrives_through_shared_memory) {
-  protocol::SharedMemory memory(protocol::observation_bytes(layout.picture));
-  protocol::write(observation(7), memory);
-  const Json instances = protocol::instances_json(observation(7));
+  host::SharedMemory memory(host::observation_bytes(layout.picture));
+  host::write(observation(7), memory);
+  const Json instances = host::instances_json(observation(7));
   Observation read;
-  protocol::read_observation(memory, layout.picture, JsonReader(instances, "act"), false, read);
+  host::read_observation(memory, layout.picture, JsonReader(instances, "act"), false, read);
   EXPECT_EQ(read.size, layout.picture);
   EXPECT_EQ(read.rgb, observation(7).rgb);
   EXPECT_EQ(read.ids, observation(7).ids);
-  EXPECT_EQ(protocol::instances_json(read), instances);
+  EXPECT_EQ(host::instances_json(read), instances);
   EXPECT_TRUE(read.shadows.empty());
-  protocol::write(shaded(7), memory);
-  protocol::read_observation(memory, layout.picture, JsonReader(instances, "act"), true, read);
+  host::write(shaded(7), memory);
+  host::read_observation(memory, layout.picture, JsonReader(instances, "act"), true, read);
   EXPECT_EQ(read.shadows, shaded(7).shadows);
   EXPECT_EQ(read.ids, observation(7).ids);
   Observation larger = observation(7);
   larger.size = {31, 40};
-  EXPECT_SAYS(message_of<Error>([&] { protocol::write(larger, memory); }), "got 31 x 40");
+  EXPECT_SAYS(message_of<Error>([&] { host::write(larger, memory); }), "got 31 x 40");
 }
 
 TEST(Messages, what_is_perceived_arrives_with_its_pixels_counted) {
   Observation sent = observation(7);
   sent.instances.front().pixels = -5;
-  const Frame ids = protocol::ids_frame(sent), perceived = protocol::perceived_frame(sent);
-  const Observation read = protocol::read_perceived(ids, perceived, layout.picture);
+  const Frame ids = host::ids_frame(sent), perceived = host::perceived_frame(sent);
+  const Observation read = host::read_perceived(ids, perceived, layout.picture);
   EXPECT_EQ(read.rgb, sent.rgb);
   EXPECT_EQ(read.ids, sent.ids);
   ASSERT_EQ(read.instances.size(), sent.instances.size());
   EXPECT_EQ(read.instances.front().object_type, sent.instances.front().object_type);
   EXPECT_EQ(read.instances.front().pixels, std::count(sent.ids.begin(), sent.ids.end(), sent.instances.front().id));
   const auto refusal = [](const Frame& some_ids, const Frame& some_perceived) {
-    return message_of<InputError>([&] { protocol::read_perceived(some_ids, some_perceived, layout.picture); });
+    return message_of<InputError>([&] { host::read_perceived(some_ids, some_perceived, layout.picture); });
   };
   EXPECT_SAYS(refusal({ids.header, "short"}, {perceived.header, perceived.payload}), "a byte for each pixel");
   EXPECT_SAYS(refusal({ids.header, ids.payload}, {perceived.header, "short"}), "3 bytes for each pixel");
@@ -298,11 +298,11 @@ TEST(Messages, what_is_perceived_arrives_with_its_pixels_counted) {
 }
 
 TEST(Messages, a_layout_arrives_as_it_was_said) {
-  const Json json = protocol::to_json(layout);
-  EXPECT_EQ(protocol::to_json(protocol::read_layout({json, "hello"})), json);
+  const Json json = host::to_json(layout);
+  EXPECT_EQ(host::to_json(host::read_layout({json, "hello"})), json);
   Json none = json;
   none["observation"]["rows"] = 0;
-  EXPECT_SAYS(message_of<InputError>([&] { protocol::read_layout({none, "hello"}); }), "/observation/rows");
+  EXPECT_SAYS(message_of<InputError>([&] { host::read_layout({none, "hello"}); }), "/observation/rows");
 }
 
 }  // namespace

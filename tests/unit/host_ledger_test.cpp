@@ -80,18 +80,18 @@ class AnswerLedgerTest : public testing::Test {
   }
   Json ask_all() {
     Json questions = Json::array();
-    for (const auto& type : space.object_types) questions.push_back(protocol::to_json(Question{{}, {}, type}, command));
+    for (const auto& type : space.object_types) questions.push_back(host::to_json(Question{{}, {}, type}, command));
     for (const auto& texture : space.textures)
-      questions.push_back(protocol::to_json(Question{{}, Question::Group::texture, texture}, command));
+      questions.push_back(host::to_json(Question{{}, Question::Group::texture, texture}, command));
     return say({{"type", "ask"},
-                {"command", protocol::to_json(command)},
-                {"space", protocol::to_json(space)},
+                {"command", host::to_json(command)},
+                {"space", host::to_json(space)},
                 {"questions", questions}});
   }
   Json person(const char* how, const FeatureSet& proposal = {}) {
     return say({{"type", "person"},
                 {"how", how},
-                {"command", protocol::to_json(command)},
+                {"command", host::to_json(command)},
                 {"proposal", {{"target", to_json(proposal)}}}});
   }
   Selection account(const FeatureSet& target) const {
@@ -188,8 +188,8 @@ TEST_F(AnswerLedgerTest, a_revision_stands_on_the_answer_before_it) {
 Json ask_for_hypotheses() {
   return {{"type", "ask"},
           {"how", "hypotheses"},
-          {"command", protocol::to_json(command)},
-          {"space", protocol::to_json(space)}};
+          {"command", host::to_json(command)},
+          {"space", host::to_json(space)}};
 }
 
 Selection red(const std::string& object_type) {
@@ -206,7 +206,7 @@ TEST_F(AnswerLedgerTest, a_hypothesis_is_an_answer_and_one_that_is_edited_is_not
   AnswerLedger ledger(space, services_, earlier);
   ledger.answer({ask_for_hypotheses()}, *worker_);
   const Json reply = host_->receive()->header;
-  EXPECT_EQ(protocol::read_hypotheses(JsonReader(reply, "reply").at("hypotheses")).at(1).text, "Pans.");
+  EXPECT_EQ(host::read_hypotheses(JsonReader(reply, "reply").at("hypotheses")).at(1).text, "Pans.");
   EXPECT_EQ(ledger.account(red("star")).source, "a model, supposing \"The person likes stars.\"");
   EXPECT_EQ(ledger.account(red("star")).provenance, Provenance::recorded);
   EXPECT_EQ(ledger.account(red("star")).cost.lm_queries, 21);
@@ -226,7 +226,7 @@ TEST_F(AnswerLedgerTest, what_nobody_knows_costs_its_questions_alone) {
 TEST_F(AnswerLedgerTest, a_person_who_is_shown_objects_is_the_source_where_no_model_is) {
   say({{"type", "person"},
        {"how", "accept"},
-       {"command", protocol::to_json(command)},
+       {"command", host::to_json(command)},
        {"object_type", "star"},
        {"texture", "red"}});
   EXPECT_EQ(account({{"star"}, {"red"}}).source, "after a person was shown an object");
@@ -237,7 +237,7 @@ TEST_F(AnswerLedgerTest, a_person_who_is_shown_objects_makes_any_answer_a_simula
   for (const bool star : {true, false})
     EXPECT_EQ(say({{"type", "person"},
                    {"how", "accept"},
-                   {"command", protocol::to_json(command)},
+                   {"command", host::to_json(command)},
                    {"object_type", star ? "star" : "pan"},
                    {"texture", "red"}})["accepts"],
               star);

@@ -13,8 +13,8 @@
 #include <lgabench/core/feature_space.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/perturbations.hpp>
-#include <lgabench/seeing/grow.hpp>
-#include <lgabench/seeing/reader.hpp>
+#include <readers/grow.hpp>
+#include <readers/reader.hpp>
 #include <tabletop/placement.hpp>
 #include <tabletop/renderer.hpp>
 

@@ -71,11 +71,11 @@ void AnswerLedger::rethrow() const {
 
 Json AnswerLedger::answer_questions(const JsonReader& reader) {
   if (reader.has("how")) return answer_in_one(reader);
-  const auto [command, space, questions] = protocol::read_or_malformed([&] {
+  const auto [command, space, questions] = host::read_or_malformed([&] {
     std::vector<Question> all;
-    const Command asked = protocol::read_command(reader.at("command"));
-    for (const JsonReader& one : reader.at("questions").elements()) all.push_back(protocol::read_question(one, asked));
-    return std::tuple(asked, protocol::read_space(reader.at("space")), all);
+    const Command asked = host::read_command(reader.at("command"));
+    for (const JsonReader& one : reader.at("questions").elements()) all.push_back(host::read_question(one, asked));
+    return std::tuple(asked, host::read_space(reader.at("space")), all);
   });
   LanguageModel& lm = services_.lm;
   const std::vector<bool> answers = lm.answer(command, space, questions);
@@ -94,16 +94,16 @@ Json AnswerLedger::answer_questions(const JsonReader& reader) {
 }
 
 Json AnswerLedger::answer_in_one(const JsonReader& reader) {
-  const auto [how, command, space] = protocol::read_or_malformed([&] {
+  const auto [how, command, space] = host::read_or_malformed([&] {
     const std::string word = reader.at("how").string();
     if (word != "meaning" && word != "hypotheses") reader.at("how").fail("meaning or hypotheses");
-    return std::tuple(word, protocol::read_command(reader.at("command")), protocol::read_space(reader.at("space")));
+    return std::tuple(word, host::read_command(reader.at("command")), host::read_space(reader.at("space")));
   });
   if (how == "hypotheses") {
     const std::vector<Hypothesis> hypotheses = services_.lm.hypotheses(command, space);
     Json reply = signed_reply(command);
     suppose(hypotheses);
-    reply.update({{"type", "hypotheses"}, {"hypotheses", protocol::to_json(hypotheses)}});
+    reply.update({{"type", "hypotheses"}, {"hypotheses", host::to_json(hypotheses)}});
     return reply;
   }
   model_.target = services_.lm.mean(command, space);
@@ -138,33 +138,33 @@ Json AnswerLedger::signed_reply(const Command& command) {
   return {{"model", lm.model()},
           {"provenance", to_string(lm.provenance())},
           {"asked_as", model_.asked_as},
-          {"cost", protocol::to_json(lm.cost())}};
+          {"cost", host::to_json(lm.cost())}};
 }
 
 Json AnswerLedger::ask_person(const JsonReader& reader) {
-  const auto [how, command, proposal] = protocol::read_or_malformed([&] {
+  const auto [how, command, proposal] = host::read_or_malformed([&] {
     const std::string word = reader.at("how").string();
     if (word != "specify" && word != "edit" && word != "accept" && word != "truth" && word != "scene" &&
         word != "takes" && word != "which")
       reader.at("how").fail("specify, edit, accept, truth, scene, takes or which");
-    return std::tuple(word, protocol::read_command(reader.at("command")),
-                      word == "edit" ? protocol::read_selection(reader.at("proposal")) : Selection());
+    return std::tuple(word, host::read_command(reader.at("command")),
+                      word == "edit" ? host::read_selection(reader.at("proposal")) : Selection());
   });
   if (how == "accept") {
-    const auto [type, texture] = protocol::read_or_malformed(
+    const auto [type, texture] = host::read_or_malformed(
         [&] { return std::pair(reader.at("object_type").string(), reader.at("texture").string()); });
     ++accepts_;
     return {{"type", "accepts"}, {"accepts", services_.human.accepts(command, type, texture)}};
   }
   if (how == "scene" || how == "takes" || how == "which") {
     const bool takes = how == "takes";  // a lambda of C++17 captures no structured binding
-    const auto [scene, instance] = protocol::read_or_malformed([&] {
+    const auto [scene, instance] = host::read_or_malformed([&] {
       constexpr long long most = 1 << 20;
       return std::pair(static_cast<int>(reader.at("scene").integer(-most, most)),
                        takes ? static_cast<std::uint8_t>(reader.at("instance").integer(0, 255)) : 0);
     });
     if (how == "scene")
-      return {{"type", "scene"}, {"objects", protocol::to_json(services_.human.scene(command, scene))}};
+      return {{"type", "scene"}, {"objects", host::to_json(services_.human.scene(command, scene))}};
     accepts_ += takes ? 1 : price_of_which;
     if (takes)
       return {{"type", "takes"}, {"takes", services_.human.takes(command, scene, static_cast<std::uint8_t>(instance))}};
@@ -175,7 +175,7 @@ Json AnswerLedger::ask_person(const JsonReader& reader) {
                              : how == "truth" ? services_.truth(command)
                                               : services_.human.specify(command);
   keep(answered);
-  return {{"type", "person"}, {"selection", protocol::told(answered)}};
+  return {{"type", "person"}, {"selection", host::told(answered)}};
 }
 
 void AnswerLedger::keep(Selection answered) { answers_.push_back(in_order(std::move(answered), space_)); }

@@ -32,7 +32,7 @@ HostCommand command_of(const HostJob& job, const Confinement* confinement) {
   return command;
 }
 
-protocol::Layout layout_of(const HostJob& job) {
+host::Layout layout_of(const HostJob& job) {
   const EnvironmentType& type = find_environment(job.environment);
   return {type.picture_size(),
           job.task.empty() ? type.action_space() : type.action_space_of(find_task(type, job.task))};
@@ -46,12 +46,12 @@ Json plugin_json(const PluginInfo& plugin) {
 }
 
 // A perturbation and a perceiver are told of pictures alone.
-Json hello_of(const HostJob& job, const protocol::Layout& layout) {
+Json hello_of(const HostJob& job, const host::Layout& layout) {
   Json hello{{"type", "hello"},
              {"protocol", protocol_version},
              {job.plugin.kind, plugin_json(job.plugin)},
              {"limits", {{"header_bytes", most_header_bytes}, {"payload_bytes", most_payload_bytes}}}};
-  hello.update(protocol::to_json(layout));
+  hello.update(host::to_json(layout));
   if (job.plugin.kind == "perturbation" || job.plugin.kind == "perceiver")
     hello.erase("action");
   else
@@ -98,7 +98,7 @@ HostSession::HostSession(const HostJob& job)
       confinement_(job.confined ? std::make_unique<Confinement>(reach_of(job)) : nullptr),
       process_(command_of(job, confinement_.get())),
       channel_(process_.take_socket(), [this](short events) { wait(events); }),
-      observation_(protocol::observation_bytes(layout_.picture)) {
+      observation_(host::observation_bytes(layout_.picture)) {
   const Frame answer = call(hello_of(job, layout_), "hello", {}, &observation_.file());
   read([&] { return JsonReader(answer.header, "hello").at("protocol").integer(protocol_version, protocol_version); });
 }
@@ -122,7 +122,7 @@ void HostSession::wait(short events) {
 }
 
 void HostSession::raise(const JsonReader& error) {
-  const auto [kind, reason] = protocol::read_or_malformed(
+  const auto [kind, reason] = host::read_or_malformed(
       [&] { return std::pair(error.at("kind").string(), error.at("reason").string().substr(0, longest)); });
   if (kind == "memory") throw PluginOutOfMemory(whom_);
   if (kind == "plugin") throw PluginError(reason);
@@ -161,7 +161,7 @@ Frame HostSession::call(const Json& request, const char* reply, const Meanwhile&
 
 ProcessState HostSession::state() {
   const Frame frame = call({{"type", "state"}}, "state");
-  return read([&] { return protocol::read_state(JsonReader(frame.header, "state")); });
+  return read([&] { return host::read_state(JsonReader(frame.header, "state")); });
 }
 
 }  // namespace lgabench

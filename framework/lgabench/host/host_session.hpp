@@ -56,12 +56,12 @@ class HostSession {
   /// Returns what a reply holds. @throws MethodGone
   template <class Call>
   auto read(Call&& call) -> decltype(call()) {
-    return guarded_by_protocol([&] { return protocol::read_or_malformed(call); });
+    return guarded_by_protocol([&] { return host::read_or_malformed(call); });
   }
 
-  const protocol::Layout& layout() const { return layout_; }
+  const host::Layout& layout() const { return layout_; }
   const std::vector<std::string>& refused_calls() const { return process_.refused_calls(); }
-  protocol::SharedMemory& observation() { return observation_; }
+  host::SharedMemory& observation() { return observation_; }
   /// As ProcessState, of a C++ plugin's process beyond what it held before the plugin came.
   ProcessState state();
   /// Processes that the plugin started and that are still there, "NUMBER NAME" each.
@@ -90,14 +90,14 @@ class HostSession {
 
   using Clock = std::chrono::steady_clock;
   const std::string whom_;  // "plugin ID (KIND)"
-  const protocol::Layout layout_;
+  const host::Layout layout_;
   Clock::time_point asked_{};
   bool is_told_ = false;    // that this one is awaited
   std::string last_words_;  // of what ends its process
   std::unique_ptr<Confinement> confinement_;
   HostProcess process_;
   Channel channel_;
-  protocol::SharedMemory observation_;
+  host::SharedMemory observation_;
   std::string broken_;  // why nothing can be asked any more
 };
 

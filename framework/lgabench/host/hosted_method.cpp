@@ -26,11 +26,11 @@ class HostedPolicy : public Policy {
   void reset() override { reset_ = true; }
   Action act(const Observation& observation, const Instruction& instruction) override {
     acted_ = false;
-    protocol::write(observation, session_->observation());
+    host::write(observation, session_->observation());
     Json request{{"type", "act"},
                  {"reset", std::exchange(reset_, false)},
-                 {"instruction", protocol::to_json(instruction)},
-                 {"instances", protocol::instances_json(observation)}};
+                 {"instruction", host::to_json(instruction)},
+                 {"instances", host::instances_json(observation)}};
     if (!observation.shadows.empty()) request["shadows"] = true;
     const Frame frame = session_->call(request, "action");
     return session_->read([&] {
@@ -38,14 +38,14 @@ class HostedPolicy : public Policy {
       acted_ = true;
       seen_.reset();
       if (reader.has("seen_in_training")) seen_ = reader.at("seen_in_training").boolean();
-      return protocol::read_action(frame.payload, session_->layout().actions.size());
+      return host::read_action(frame.payload, session_->layout().actions.size());
     });
   }
   std::optional<bool> seen_in_training() const override { return seen_; }
   Shown shown() const override {
     if (!acted_) return {};
     const Frame frame = session_->call({{"type", "shown"}}, "shown");
-    return session_->read([&] { return protocol::read_shown(frame); });
+    return session_->read([&] { return host::read_shown(frame); });
   }
   /// In parts, as a frame holds no more. What is too large is said in the log.
   std::optional<std::string> saved() const override {
@@ -84,7 +84,7 @@ HostedMethod::~HostedMethod() = default;
 
 Needs HostedMethod::needs(const Json&) const {
   const Frame frame = session_->call({{"type", "needs"}}, "needs");
-  return session_->read([&] { return protocol::read_needs(JsonReader(frame.header, "needs")); });
+  return session_->read([&] { return host::read_needs(JsonReader(frame.header, "needs")); });
 }
 
 Selection HostedMethod::select(const Command& command, const FeatureSpace& space, Services& services) {
@@ -93,11 +93,11 @@ Selection HostedMethod::select(const Command& command, const FeatureSpace& space
   const auto answer = [&ledger](const Frame& frame, Channel& channel) { return ledger.answer(frame, channel); };
   try {
     const Frame frame = session_->call(
-        {{"type", "select"}, {"command", protocol::to_json(command)}, {"space", protocol::to_json(space)}}, "selection",
+        {{"type", "select"}, {"command", host::to_json(command)}, {"space", host::to_json(space)}}, "selection",
         answer);
     return ledger.account(session_->read([&] {
       const JsonReader reader(frame.header, "selection");
-      return protocol::read_selection(reader.at("selection"));
+      return host::read_selection(reader.at("selection"));
     }));
   } catch (const MethodError&) {
     ledger.rethrow();
@@ -109,17 +109,17 @@ Selection HostedMethod::revise(const Command& command, const Selection& selected
                                const std::vector<Demonstration>& demonstrations, Services& services) {
   AnswerLedger ledger(space_, services, selected);
   const auto answer = [&ledger](const Frame& frame, Channel& channel) { return ledger.answer(frame, channel); };
-  const protocol::DemonstrationFile packed = protocol::pack(session_->layout(), demonstrations);
+  const host::DemonstrationFile packed = host::pack(session_->layout(), demonstrations);
   Json request = packed.header;
   request["type"] = "revise";
-  request["command"] = protocol::to_json(command);
-  request["selection"] = protocol::told(selected);
+  request["command"] = host::to_json(command);
+  request["selection"] = host::told(selected);
   request["shows_truth"] = services.shows_truth;
   try {
     const Frame frame = session_->call(request, "revised", answer, &packed.file);
     return ledger.account(session_->read([&] {
       const JsonReader reader(frame.header, "revised");
-      return protocol::read_selection(reader.at("selection"));
+      return host::read_selection(reader.at("selection"));
     }));
   } catch (const MethodError&) {
     ledger.rethrow();
@@ -133,13 +133,13 @@ std::unique_ptr<Policy> HostedMethod::learn(const std::vector<Demonstration>& de
   const auto answer = [&](const Frame& frame, Channel& channel) {
     if (frame.type() != "log") return ledger.answer(frame, channel);
     for (const auto& [epochs, steps, loss, curves] :
-         protocol::read_or_malformed([&] { return protocol::read_log(frame); })) {
+         host::read_or_malformed([&] { return host::read_log(frame); })) {
       for (const auto& [name, value] : curves) services.log.curve(name, value);
       services.log.epoch(epochs, steps, loss);
     }
     return true;
   };
-  const protocol::DemonstrationFile packed = protocol::pack(session_->layout(), demonstrations);
+  const host::DemonstrationFile packed = host::pack(session_->layout(), demonstrations);
   Json request = packed.header;
   request["type"] = "learn";
   try {
@@ -152,7 +152,7 @@ std::unique_ptr<Policy> HostedMethod::learn(const std::vector<Demonstration>& de
 }
 
 std::unique_ptr<Policy> HostedMethod::restore(const std::string& saved) {
-  protocol::SharedMemory memory(saved.size());
+  host::SharedMemory memory(saved.size());
   std::copy(saved.begin(), saved.end(), memory.data());
   session_->call({{"type", "restore"}, {"bytes", saved.size()}}, "restored", {}, &memory.file());
   return std::make_unique<HostedPolicy>(session_);

@@ -28,18 +28,18 @@ Observation HostedPerturbation::read(Observation seen, const FeatureSpace& space
 }
 
 Observation HostedPerturbation::answer_to(const Observation& seen, Json request) {
-  protocol::write(seen, session_->observation());
+  host::write(seen, session_->observation());
   std::optional<Frame> ids;
   const auto takes_ids = [&ids](const Frame& frame, Channel&) {
     if (frame.type() != "ids" || ids) return false;
     ids = Frame{frame.header, frame.payload};
     return true;
   };
-  request.update({{"type", "perceive"}, {"instances", protocol::instances_json(seen)}});
+  request.update({{"type", "perceive"}, {"instances", host::instances_json(seen)}});
   const Frame frame = session_->call(request, "perceived", takes_ids);
   return session_->read([&] {
     if (!ids) throw InputError("\"perceived\", expected \"ids\" before it");
-    return protocol::read_perceived(*ids, frame, session_->layout().picture);
+    return host::read_perceived(*ids, frame, session_->layout().picture);
   });
 }
 

@@ -58,7 +58,7 @@ static void fields(ProcessState& state, Fields& field) {
 
 }  // namespace lgabench
 
-namespace lgabench::protocol {
+namespace lgabench::host {
 namespace {
 
 using About = Question::About;
@@ -293,4 +293,4 @@ Observation read_perceived(const Frame& ids, const Frame& perceived, PictureSize
   return all;
 }
 
-}  // namespace lgabench::protocol
+}  // namespace lgabench::host

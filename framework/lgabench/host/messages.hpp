@@ -9,7 +9,7 @@
 #include <lgabench/host/frames.hpp>
 #include <lgabench/host/process_state.hpp>
 
-namespace lgabench::protocol {
+namespace lgabench::host {
 
 /// Returns call(); an InputError becomes Malformed.
 template <class Call>
@@ -130,4 +130,4 @@ struct DemonstrationFile {
 DemonstrationFile pack(const Layout& layout, const std::vector<Demonstration>& demonstrations);
 std::vector<Demonstration> unpack(const Layout& layout, const JsonReader& header, const Descriptor& file);
 
-}  // namespace lgabench::protocol
+}  // namespace lgabench::host

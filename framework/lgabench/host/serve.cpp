@@ -36,11 +36,11 @@ class RemoteModel : public LanguageModel {
   std::vector<bool> answer(const Command& command, const FeatureSpace& space,
                            const std::vector<Question>& questions) override {
     Json all = Json::array();
-    for (const Question& question : questions) all.push_back(protocol::to_json(question, command));
+    for (const Question& question : questions) all.push_back(host::to_json(question, command));
     const Frame frame = ask(channel_,
                             {{"type", "ask"},
-                             {"command", protocol::to_json(command)},
-                             {"space", protocol::to_json(space)},
+                             {"command", host::to_json(command)},
+                             {"space", host::to_json(space)},
                              {"questions", all}},
                             "answers");
     const JsonReader reader(frame.header, "answers");
@@ -53,8 +53,8 @@ class RemoteModel : public LanguageModel {
     const Frame frame = ask(channel_,
                             {{"type", "ask"},
                              {"how", "meaning"},
-                             {"command", protocol::to_json(command)},
-                             {"space", protocol::to_json(space)}},
+                             {"command", host::to_json(command)},
+                             {"space", host::to_json(space)}},
                             "meaning");
     const JsonReader reader(frame.header, "meaning");
     note(reader, command);
@@ -64,12 +64,12 @@ class RemoteModel : public LanguageModel {
     const Frame frame = ask(channel_,
                             {{"type", "ask"},
                              {"how", "hypotheses"},
-                             {"command", protocol::to_json(command)},
-                             {"space", protocol::to_json(space)}},
+                             {"command", host::to_json(command)},
+                             {"space", host::to_json(space)}},
                             "hypotheses");
     const JsonReader reader(frame.header, "hypotheses");
     note(reader, command);
-    return protocol::read_hypotheses(reader.at("hypotheses"));
+    return host::read_hypotheses(reader.at("hypotheses"));
   }
   std::string model() const override { return model_; }
   std::string asked_as(const Command& command) const override {
@@ -84,7 +84,7 @@ class RemoteModel : public LanguageModel {
   void note(const JsonReader& reader, const Command& command) {
     model_ = reader.at("model").string();
     provenance_ = provenance_from(reader.at("provenance").string());
-    cost_ = protocol::read_cost(reader.at("cost"));
+    cost_ = host::read_cost(reader.at("cost"));
     asked_as_[command.utterance] = reader.at("asked_as").string();
   }
 
@@ -99,26 +99,26 @@ class RemoteHuman : public HumanAnswers {
  public:
   explicit RemoteHuman(Channel& channel) : channel_(channel) {}
   Selection specify(const Command& command) override {
-    return person({{"type", "person"}, {"how", "specify"}, {"command", protocol::to_json(command)}});
+    return person({{"type", "person"}, {"how", "specify"}, {"command", host::to_json(command)}});
   }
   Selection edit(const Command& command, const Selection& proposal) override {
     return person({{"type", "person"},
                    {"how", "edit"},
-                   {"command", protocol::to_json(command)},
+                   {"command", host::to_json(command)},
                    {"proposal", distribution_json(proposal)}});
   }
   bool accepts(const Command& command, const std::string& object_type, const std::string& texture) override {
     const Frame frame = ask(channel_,
                             {{"type", "person"},
                              {"how", "accept"},
-                             {"command", protocol::to_json(command)},
+                             {"command", host::to_json(command)},
                              {"object_type", object_type},
                              {"texture", texture}},
                             "accepts");
     return JsonReader(frame.header, "accepts").at("accepts").boolean();
   }
   std::vector<Placed> scene(const Command& command, int scene) override {
-    return protocol::read_placed(JsonReader(in_scene("scene", command, scene).header, "scene").at("objects"));
+    return host::read_placed(JsonReader(in_scene("scene", command, scene).header, "scene").at("objects"));
   }
   bool takes(const Command& command, int scene, std::uint8_t instance) override {
     return JsonReader(in_scene("takes", command, scene, instance).header, "takes").at("takes").boolean();
@@ -129,7 +129,7 @@ class RemoteHuman : public HumanAnswers {
     return one.json().is_null() ? std::nullopt : std::optional(static_cast<std::uint8_t>(one.integer(0, 255)));
   }
   Selection truth(const Command& command) {
-    return person({{"type", "person"}, {"how", "truth"}, {"command", protocol::to_json(command)}});
+    return person({{"type", "person"}, {"how", "truth"}, {"command", host::to_json(command)}});
   }
 
  private:
@@ -137,14 +137,14 @@ class RemoteHuman : public HumanAnswers {
     return ask(channel_,
                {{"type", "person"},
                 {"how", how},
-                {"command", protocol::to_json(command)},
+                {"command", host::to_json(command)},
                 {"scene", scene},
                 {"instance", instance}},
                how);
   }
   Selection person(const Json& question) {
     const Frame frame = ask(channel_, question, "person");
-    return protocol::read_selection(JsonReader(frame.header, "person").at("selection"));
+    return host::read_selection(JsonReader(frame.header, "person").at("selection"));
   }
   Channel& channel_;
 };
@@ -167,7 +167,7 @@ class RemoteLog : public TrainingLog {
   }
   void flush() {
     if (waiting_.empty()) return;
-    const Frame frame = protocol::log_frame(waiting_);
+    const Frame frame = host::log_frame(waiting_);
     waiting_.clear();
     sent_ = Clock::now();
     channel_.send(frame.header, frame.payload);
@@ -177,7 +177,7 @@ class RemoteLog : public TrainingLog {
   using Clock = std::chrono::steady_clock;
   Channel& channel_;
   bool open_ = false;
-  std::vector<protocol::LogEntry> waiting_;
+  std::vector<host::LogEntry> waiting_;
   std::vector<std::pair<std::string, double>> curves_;  // of the pass that epoch() ends
   Clock::time_point sent_ = Clock::now();
 };
@@ -190,8 +190,8 @@ class Host {
         model_(channel),
         human_(channel),
         log_(channel),
-        layout_(protocol::read_layout({hello.header, "hello"})),
-        memory_(hello.file, protocol::observation_bytes(layout_.picture)) {
+        layout_(host::read_layout({hello.header, "hello"})),
+        memory_(hello.file, host::observation_bytes(layout_.picture)) {
     const JsonReader reader(hello.header, "hello");
     options_ = reader.at("options").json();
     const JsonReader seed = reader.at("seed");
@@ -238,26 +238,26 @@ class Host {
                       [this](const Command& command) { return human_.truth(command); },
                       files_};
     if (frame.type() == "needs") {
-      Json needs = protocol::to_json(call([&] { return method().needs(options_); }));
+      Json needs = host::to_json(call([&] { return method().needs(options_); }));
       needs["type"] = "needs";
       return {needs};
     }
     if (frame.type() == "select") {
-      const Command command = protocol::read_command(reader.at("command"));
-      const FeatureSpace space = protocol::read_space(reader.at("space"));
+      const Command command = host::read_command(reader.at("command"));
+      const FeatureSpace space = host::read_space(reader.at("space"));
       const Selection selection = call([&] { return method().select(command, space, services); });
       return {{{"type", "selection"}, {"selection", distribution_json(selection)}}};
     }
     if (frame.type() == "revise") {
-      const Command command = protocol::read_command(reader.at("command"));
-      const Selection selected = protocol::read_selection(reader.at("selection"));
-      const std::vector<Demonstration> demonstrations = protocol::unpack(layout_, reader, frame.file);
+      const Command command = host::read_command(reader.at("command"));
+      const Selection selected = host::read_selection(reader.at("selection"));
+      const std::vector<Demonstration> demonstrations = host::unpack(layout_, reader, frame.file);
       services.shows_truth = reader.at("shows_truth").boolean();
       const Selection revised = call([&] { return method().revise(command, selected, demonstrations, services); });
       return {{{"type", "revised"}, {"selection", distribution_json(revised)}}};
     }
     if (frame.type() == "learn") {
-      const std::vector<Demonstration> demonstrations = protocol::unpack(layout_, reader, frame.file);
+      const std::vector<Demonstration> demonstrations = host::unpack(layout_, reader, frame.file);
       policy_ = call([&] { return method().learn(demonstrations, services); });
       if (!policy_) throw MethodError("learn returned no policy");
       return {{{"type", "learned"}}};
@@ -271,7 +271,7 @@ class Host {
     }
     if (frame.type() == "restore") {
       const auto size = static_cast<std::size_t>(reader.at("bytes").integer(0, 1LL << 40));
-      const protocol::SharedMemory memory(frame.file, size);
+      const host::SharedMemory memory(frame.file, size);
       const std::string saved(reinterpret_cast<const char*>(memory.data()), size);
       policy_ = call([&] { return method().restore(saved, services); });
       if (!policy_) throw MethodError("restore returned no policy");
@@ -279,9 +279,9 @@ class Host {
     }
     if (frame.type() == "act") {
       if (!policy_) throw MethodError("asked to act before it learned");
-      protocol::read_observation(memory_, layout_.picture, reader.at("instances"),
+      host::read_observation(memory_, layout_.picture, reader.at("instances"),
                                  reader.has("shadows") && reader.at("shadows").boolean(), observation_);
-      const Instruction instruction = protocol::read_instruction(reader.at("instruction"));
+      const Instruction instruction = host::read_instruction(reader.at("instruction"));
       const Action action = call([&] {
         if (reader.at("reset").boolean()) policy_->reset();
         return policy_->act(observation_, instruction);
@@ -290,10 +290,10 @@ class Host {
         throw MethodError(fmt::format("act() returned {} numbers, expected {}", action.size(), layout_.actions.size()));
       Json reply{{"type", "action"}};
       if (const auto seen = call([&] { return policy_->seen_in_training(); })) reply["seen_in_training"] = *seen;
-      return {reply, protocol::to_bytes(action)};
+      return {reply, host::to_bytes(action)};
     }
     if (frame.type() == "shown")
-      return protocol::shown_frame(policy_ ? call([&] { return policy_->shown(); }) : Shown());
+      return host::shown_frame(policy_ ? call([&] { return policy_->shown(); }) : Shown());
     if (frame.type() == "drop") {
       const bool drops_method = reader.at("what").string() == "method";
       call([&] { drops_method ? method_.reset() : policy_.reset(); });
@@ -302,7 +302,7 @@ class Host {
     if (frame.type() == "state") {
       ProcessState state = ProcessState::now().beyond(before_);
       arithmetic_.tell(state);
-      Json reply = protocol::to_json(state);
+      Json reply = host::to_json(state);
       reply["type"] = "state";
       return {reply};
     }
@@ -327,8 +327,8 @@ class Host {
   RemoteModel model_;
   RemoteHuman human_;
   RemoteLog log_;
-  protocol::Layout layout_;
-  protocol::SharedMemory memory_;
+  host::Layout layout_;
+  host::SharedMemory memory_;
   Observation observation_;                              // the last one
   const ProcessState before_ = ProcessState::now();      // the plugin came
   Arithmetic arithmetic_;                                // at the end of every call

@@ -24,8 +24,8 @@ class PerturbationHost {
  public:
   PerturbationHost(Channel& channel, const Frame& hello)
       : channel_(channel),
-        picture_(protocol::read_picture_size({hello.header, "hello"})),
-        memory_(hello.file, protocol::observation_bytes(picture_)),
+        picture_(host::read_picture_size({hello.header, "hello"})),
+        memory_(hello.file, host::observation_bytes(picture_)),
         plugin_(named_plugin(hello, hello.header.contains("perceiver") ? "perceiver" : "perturbation")) {
     load();
     channel_.send(
@@ -43,7 +43,7 @@ class PerturbationHost {
       throw MethodError(fmt::format("unexpected frame from the worker: \"{}\"", frame.type()));
     ProcessState state = ProcessState::now().beyond(before_);
     arithmetic_.tell(state);
-    Json reply = protocol::to_json(state);
+    Json reply = host::to_json(state);
     reply["type"] = "state";
     channel_.send(reply);
   }
@@ -58,7 +58,7 @@ class PerturbationHost {
  private:
   void perceive(const JsonReader& reader) {
     Observation seen;
-    protocol::read_observation(memory_, picture_, reader.at("instances"), false, seen);
+    host::read_observation(memory_, picture_, reader.at("instances"), false, seen);
     load();  // check-plugin may have had the first destroyed
     const auto call = [&] {
       const FlushDenormalsAgain on_every_way_out;
@@ -68,7 +68,7 @@ class PerturbationHost {
     };
     const Observation perceived = call();
     expect_size(perceived, picture_, perceiver_ ? "read" : "perceive");
-    for (const Frame& frame : {protocol::ids_frame(perceived), protocol::perceived_frame(perceived)})
+    for (const Frame& frame : {host::ids_frame(perceived), host::perceived_frame(perceived)})
       channel_.send(frame.header, frame.payload);
   }
 
@@ -94,7 +94,7 @@ class PerturbationHost {
 
   Channel& channel_;
   const PictureSize picture_;
-  const protocol::SharedMemory memory_;
+  const host::SharedMemory memory_;
   const ProcessState before_ = ProcessState::now();  // the plugin came
   Arithmetic arithmetic_;                            // at the end of every call
   PluginInfo plugin_;

@@ -15,7 +15,7 @@
 #define F_SEAL_FUTURE_WRITE 0x0010
 #endif
 
-namespace lgabench::protocol {
+namespace lgabench::host {
 namespace {
 
 constexpr std::size_t instance_numbers = 5;
@@ -255,4 +255,4 @@ std::vector<Demonstration> unpack(const Layout& layout, const JsonReader& header
   return all;
 }
 
-}  // namespace lgabench::protocol
+}  // namespace lgabench::host

@@ -5,7 +5,7 @@
 
 #include <lgabench/plugin/loader.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 std::string AboutSuite::arm(const std::string& name) const {
   if (const auto own = arms.find(name); own != arms.end()) return own->second;
@@ -62,4 +62,4 @@ AboutSuite about_suite(const std::string& id, const Json& own) {
   return about;
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -6,7 +6,7 @@
 
 #include <lgabench/core/json.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 struct AboutSuite {
   std::string title;                              // its id where it says none
@@ -36,4 +36,4 @@ fs::path installed_suite(const std::string& id);
 /// says.
 AboutSuite about_suite(const std::string& id, const Json& own = nullptr);
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -12,7 +12,7 @@
 #include <lgabench/statistics/pairs.hpp>
 #include <lgabench/statistics/results.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 // "episodes.jsonl line 3"; empty for equal files.
@@ -160,4 +160,4 @@ Reproduction verdict_of(int flips, int episodes, const std::vector<PooledAgreeme
   return chance ? Reproduction::agrees : Reproduction::differs;
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

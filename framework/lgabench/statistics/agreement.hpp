@@ -7,7 +7,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/statistics/statistics.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 enum class Agreement {
   identical,       // every byte of the files without times
@@ -66,4 +66,4 @@ Reproduction verdict_of(int flips, int episodes, const std::vector<PooledAgreeme
 /// `cells`: row and agreement.
 std::vector<PooledAgreement> pooled(const std::vector<std::pair<std::string, CellAgreement>>& cells);
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

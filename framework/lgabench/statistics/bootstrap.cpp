@@ -12,7 +12,7 @@
 #include <lgabench/statistics/resampled_mean.hpp>
 #include <lgabench/statistics/statistics.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 // One unit's outcomes by scene: their sum over its policies, and how many played it.
@@ -142,7 +142,7 @@ void Outcomes::add(const std::string& participant, std::vector<std::string> scen
 
 double Outcomes::Sample::mean() const {
   double sum = 0;
-  for (const std::vector<double>& unit : units) sum += report::mean(unit);
+  for (const std::vector<double>& unit : units) sum += statistics::mean(unit);
   return sum / static_cast<double>(units.size());
 }
 
@@ -292,4 +292,4 @@ double SharedResamples::p(std::size_t one, std::size_t other) const {
   return std::min(counted, std::erfc(std::abs(mean) / std::sqrt(2 * variance)));
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

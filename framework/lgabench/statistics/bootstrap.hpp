@@ -8,7 +8,7 @@
 
 #include <lgabench/statistics/statistics.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 /// What a row's policies did in one scenario, scene by scene: success (0, 1), or a paired difference of it (-1, 0, 1).
 class Outcomes {
@@ -52,7 +52,7 @@ int distinct_scenes(const Samples& scenarios);
 // With one policy a scenario, only its scenes are drawn, and the result holds for its training seed. Every resample of
 // a row draws as well from two imagined scenes, one to either side, as Bonett and Price's interval has them: outcomes
 // that all agree do not make certain. Several policies that share 20 scenes are thus 20 scenes, not 60 episodes.
-// report_bootstrap_test.cpp measures the type-I error. `name` seeds the random stream: the same arguments, the same
+// bootstrap_test.cpp measures the type-I error. `name` seeds the random stream: the same arguments, the same
 // bits.
 
 /// 95 % percentile interval of a mean success, 2,000 resamples; Wilson's for a single policy.
@@ -91,4 +91,4 @@ class SharedResamples {
   std::vector<std::pair<int, int>> imagined_;  // of each resample, how often either imagined scene was drawn
 };
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -14,7 +14,7 @@
 #include <lgabench/statistics/claims_field.hpp>
 #include <lgabench/statistics/names.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 // Both tests of a difference are judged in the same way, each on its own.
@@ -391,4 +391,4 @@ std::vector<Claim> test_difference(const RunResults& run, const std::string& abo
   return claims;
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -8,7 +8,7 @@
 #include <lgabench/statistics/results.hpp>
 #include <lgabench/statistics/statistics.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 /// held, reversed: the data say so beyond chance. undecided: they do not. not_tested: they cannot.
 enum class Verdict { held, reversed, undecided, not_tested };
@@ -68,4 +68,4 @@ std::vector<Claim> test_difference(const RunResults& run, const std::string& abo
 /// claims.json (docs/formats).
 Json to_json(const std::string& suite, const std::vector<Claim>& claims);
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

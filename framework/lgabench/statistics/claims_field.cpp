@@ -9,7 +9,7 @@
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/statistics/pairs.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 constexpr std::size_t scenarios_needed = 6;  // for a test over scenarios
@@ -237,4 +237,4 @@ ClaimedDifference measured_slope(const Field& field, const SuiteClaim& claim, co
   return d;
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

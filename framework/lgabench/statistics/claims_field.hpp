@@ -10,7 +10,7 @@
 #include <lgabench/statistics/claims.hpp>
 #include <lgabench/statistics/paper.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 /// The cells of one (layout, engine), by row, demonstrations, scenario and training seed.
 struct Field {
@@ -52,4 +52,4 @@ ClaimedDifference measured_slope(const Field& field, const SuiteClaim& claim, co
 /// As one that enters means.
 bool has_arm(const CellResult& cell, const std::string& arm);
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -1,7 +1,7 @@
 // claims.json.
 #include <lgabench/statistics/claims.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 Json test_json(const Tested& t) {
@@ -50,4 +50,4 @@ Json to_json(const std::string& suite, const std::vector<Claim>& claims) {
   return {{"suite", suite}, {"claims", all}};
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -12,7 +12,7 @@
 #include <lgabench/core/suggest.hpp>
 #include <lgabench/statistics/names.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 struct CellPair {
@@ -294,4 +294,4 @@ RunComparison compare_runs(const RunResults& all_a, const RunResults& all_b, con
   return comparison;
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -7,7 +7,7 @@
 #include <lgabench/statistics/pairs.hpp>
 #include <lgabench/statistics/results.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 /// Success of a row in run A and in run B, on the mean over the scenarios that both hold.
 struct ComparedRow {
@@ -72,4 +72,4 @@ std::string verdict(const RunComparison& comparison);
 /// Every member, under its name.
 Json to_json(const RunComparison& comparison);
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -10,7 +10,7 @@
 #include <lgabench/statistics/results.hpp>
 #include <lgabench/statistics/statistics.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 struct Table;
 
@@ -89,4 +89,4 @@ std::vector<double> trapezoids(const std::vector<int>& levels);
 Json to_json(const ErrorCurve& curve);
 Json to_json(const PerturbationCurve& curve);
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -9,7 +9,7 @@
 #include <lgabench/core/contains.hpp>
 #include <lgabench/statistics/names.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 auto place(const CellResult& c) {
@@ -112,4 +112,4 @@ Json to_json(const std::vector<EngineAgreement>& agreements) {
   return all;
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -5,7 +5,7 @@
 
 #include <lgabench/statistics/pairs.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 /// An episode that one engine calls a success and the other a failure.
 struct Disagreement {
@@ -37,4 +37,4 @@ std::vector<EngineAgreement> engine_agreement(const RunResults& run);
 
 Json to_json(const std::vector<EngineAgreement>& agreements);
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

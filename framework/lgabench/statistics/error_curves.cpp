@@ -13,7 +13,7 @@
 #include <lgabench/statistics/pairs.hpp>
 #include <lgabench/statistics/summary.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 constexpr double per = .1;  // of p, a slope's
@@ -119,4 +119,4 @@ Json to_json(const ErrorCurve& curve) {
   return json;
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -11,7 +11,7 @@
 #include <lgabench/core/json.hpp>
 #include <lgabench/plugin/loader.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 struct Symbol {
@@ -190,4 +190,4 @@ bool worded_otherwise(const std::string& asked_as, const std::string& utterance)
   return words(asked_as) != words(utterance);
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

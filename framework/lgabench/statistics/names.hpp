@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 // A method is named by its row: its id, and "+option=value" where options tell it from other rows of that id. The
 // names, order, colours and marks of the paper's methods are data (results/paper/methods.json).
@@ -59,4 +59,4 @@ std::string provenance_words(const std::string& provenance, bool erring);
 /// Whether two wordings differ by more than a final full stop.
 bool worded_otherwise(const std::string& asked_as, const std::string& utterance);
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

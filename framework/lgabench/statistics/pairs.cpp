@@ -6,7 +6,7 @@
 
 #include <lgabench/core/rounding.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 bool same_action(const Episode& first, const Episode& second) {
   return !first.action.empty() && first.action == second.action;
@@ -101,4 +101,4 @@ std::string change_text(const Change& change) {
 
 std::string p_text(double p) { return p < 0.001 ? "p < 0.001" : "p = " + fixed(p, 3); }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

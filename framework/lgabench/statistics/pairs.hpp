@@ -9,7 +9,7 @@
 #include <lgabench/statistics/bootstrap.hpp>
 #include <lgabench/statistics/results.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 /// Whether both acted and their actions are bit-identical. Two episodes without an action say nothing about each other.
 bool same_action(const Episode& first, const Episode& second);
@@ -84,4 +84,4 @@ std::string change_text(const Change& change);
 /// "p = 0.013", "p < 0.001"
 std::string p_text(double p);
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -10,7 +10,7 @@
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/statistics/summary.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 constexpr long long most_demonstrations = 1000000;
@@ -156,4 +156,4 @@ std::vector<PaperClaim> paper_claims() {
   return all;
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 /// Success in one of the paper's figures.
 struct PaperValues {
@@ -65,4 +65,4 @@ struct PaperClaim {
 /// In their order. @throws InputError likewise.
 std::vector<PaperClaim> paper_claims();
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -16,7 +16,7 @@
 #include <lgabench/statistics/pairs.hpp>
 #include <lgabench/statistics/summary.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 // None for `all`, and where it is neither installed nor a plugin's, which the cells' scenarios declare.
@@ -289,4 +289,4 @@ Json to_json(const PerturbationCurve& curve) {
           {"first_loss", first ? Json(first->level) : Json()}};
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

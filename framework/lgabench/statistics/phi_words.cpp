@@ -10,7 +10,7 @@
 #include <lgabench/abstraction/selection_text.hpp>
 #include <lgabench/core/feature_space.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 // Read once: a report asks for every command of every cell. None where it is not installed.
@@ -106,4 +106,4 @@ std::string listed(const std::vector<std::string>& names, std::size_t known) {
   return names.size() > most ? fmt::format("{} and {} more", text, names.size() - most) : text;
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

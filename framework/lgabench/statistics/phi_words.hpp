@@ -5,7 +5,7 @@
 
 #include <lgabench/statistics/results.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 /// One kind of feature of one set of objects; each list in the order of the feature space.
 struct PhiWords {
@@ -21,4 +21,4 @@ std::vector<PhiWords> phi_words(const CellResult& cell, const CommandResult& com
 /// "heart, ring", "any of 83", "a, b, c and 70 more", "–".
 std::string listed(const std::vector<std::string>& names, std::size_t known);
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

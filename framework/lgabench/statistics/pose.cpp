@@ -15,7 +15,7 @@
 #include <lgabench/job/worker.hpp>
 #include <lgabench/record/layout.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 constexpr const char* far_from_oracle = "far_from_oracle";
@@ -93,4 +93,4 @@ void judge_by_pose(RunResults& run, const PoseTolerance& tolerance) {
       }
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -3,7 +3,7 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/statistics/results.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 /// How far an action may lie from the oracle's. The paper counts "the correct action on the target object within
 /// radius ε of the goal" (section 5) and does not give ε.
@@ -24,4 +24,4 @@ const TaskInfo& task_judged_by_pose(const std::string& environment, const std::s
 /// samples other scenes, or where lgabench-worker is missing.
 void judge_by_pose(RunResults& run, const PoseTolerance& tolerance);
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -7,7 +7,7 @@
 
 #include <lgabench/statistics/bootstrap.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 using Persons = std::map<std::pair<std::string, int>, std::vector<double>>;  // scenario and command: success by scene
@@ -94,4 +94,4 @@ Json to_json(const Regret& regret) {
           {"regret", regret.regret},       {"regret_interval", ends(regret.interval)}};
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

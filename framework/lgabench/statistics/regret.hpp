@@ -6,7 +6,7 @@
 #include <lgabench/statistics/results.hpp>
 #include <lgabench/statistics/statistics.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 /// One row at one number of demonstrations and of questions. Each person (a command) counts alike; intervals, 95 %, are
 /// over persons and scenes.
@@ -24,4 +24,4 @@ Json to_json(const Regret& regret);
 /// The row that others are compared with, and the best known one: the same rule, which chooses anew in each scene.
 bool is_bayes(const CellResult& cell);
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

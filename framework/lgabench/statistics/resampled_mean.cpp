@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 constexpr std::size_t most_units = 4;
@@ -93,4 +93,4 @@ double ResampledMean::nested(RandomStream& random) {
   return sum / static_cast<double>(units - 1);
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -8,7 +8,7 @@
 #include <lgabench/core/random.hpp>
 #include <lgabench/statistics/bootstrap.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 /// The sum of n draws with replacement from n whole numbers, by one random number: the inverse of the sum's
 /// distribution function.
@@ -43,4 +43,4 @@ class ResampledMean {
   std::vector<std::uint32_t> drawn_;
 };
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

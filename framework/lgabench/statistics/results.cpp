@@ -21,7 +21,7 @@
 #include <lgabench/record/layout.hpp>
 #include <lgabench/record/perturbed.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 // A name or a message as tables, pages and terminals may show it: it comes from a plugin, or from somebody else's run.
@@ -305,4 +305,4 @@ RunResults read_run(const fs::path& run) {
   return results;
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

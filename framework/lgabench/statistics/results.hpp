@@ -14,7 +14,7 @@
 #include <lgabench/record/episode.hpp>
 #include <lgabench/record/run_record.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 /// Members of timing.json: of cell_phases in their order, then "total_s".
 const std::vector<std::string>& phases();
@@ -92,4 +92,4 @@ CellResult read_cell(const fs::path& directory);
 /// the same.
 RunResults read_run(const fs::path& run);
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -12,7 +12,7 @@
 #include <lgabench/statistics/about_suite.hpp>
 #include <lgabench/statistics/names.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 // Names of the run's rows that a description of methods.json fits, in the order of tables.
@@ -190,4 +190,4 @@ std::vector<std::pair<std::string, std::string>> shared_options(const RunResults
   return all;
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

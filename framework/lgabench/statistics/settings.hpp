@@ -8,7 +8,7 @@
 
 #include <lgabench/statistics/results.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 /// Whether a description in methods.json, {"id"?, "options"?, ...}, is one of the cell's row.
 bool fits(const CellResult& cell, const JsonReader& description);
@@ -33,4 +33,4 @@ std::vector<std::map<std::string, std::string>> told_names(const std::vector<con
 /// Options beside the plugins' defaults that all methods of the run share: ("policy", "heat_map").
 std::vector<std::pair<std::string, std::string>> shared_options(const RunResults& run);
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <numeric>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 constexpr double z = z_95;
@@ -172,4 +172,4 @@ std::vector<Change> least_squares(const std::vector<std::vector<double>>& rows, 
   return all;
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

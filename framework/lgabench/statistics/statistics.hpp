@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 constexpr double alpha = .05;               // of every test: refused are p up to it
 constexpr double z_95 = 1.959963984540054;  // standard normal quantile at .975
@@ -67,4 +67,4 @@ struct Spread {
 };
 Spread spread(const std::vector<double>& values);
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -13,7 +13,7 @@
 #include <lgabench/statistics/pairs.hpp>
 #include <lgabench/statistics/tables.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 using Policies = std::map<std::pair<std::string, long long>, const CellResult*>;  // by scenario and training seed
@@ -144,4 +144,4 @@ Json to_json(const Steps& steps) {
           {"steps", steps_json}};
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

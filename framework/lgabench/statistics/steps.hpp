@@ -9,7 +9,7 @@
 #include <lgabench/statistics/results.hpp>
 #include <lgabench/statistics/statistics.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 struct Table;
 
@@ -63,4 +63,4 @@ inline constexpr const char* words_of_steps =
 /// "[+0.14, +0.26]"
 std::string signed_interval(const Interval& interval);
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

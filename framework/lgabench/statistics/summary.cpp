@@ -13,7 +13,7 @@
 #include <lgabench/statistics/names.hpp>
 #include <lgabench/statistics/pairs.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 // What one cell, a training seed (of one participant), adds to a row: its episodes on one arm.
@@ -365,4 +365,4 @@ Summary summarize(const RunResults& run) {
   return summary;
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

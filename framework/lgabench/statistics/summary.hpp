@@ -15,7 +15,7 @@
 #include <lgabench/statistics/statistics.hpp>
 #include <lgabench/statistics/steps.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 constexpr const char* mean_scenario = "(mean)";
 
@@ -142,4 +142,4 @@ Summary summarize(const RunResults& run);
 /// summary.json (docs/formats).
 Json to_json(const Summary& summary);
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -3,7 +3,7 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/statistics/summary.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 namespace {
 
 Json shift_json(const std::optional<Shift>& shift) {
@@ -80,4 +80,4 @@ Json to_json(const Summary& summary) {
   return json;
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

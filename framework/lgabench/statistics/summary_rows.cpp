@@ -8,7 +8,7 @@
 
 #include <lgabench/core/contains.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 void append_unique(std::vector<std::string>& all, const std::string& one) {
   if (!contains(all, one)) all.push_back(one);
@@ -98,4 +98,4 @@ std::string Table::arm_head(const std::string& arm) const {
 
 std::string Table::title() const { return fmt::format("layout {}, engine {}", layout, engine); }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

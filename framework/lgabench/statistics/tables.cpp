@@ -14,7 +14,7 @@
 #include <lgabench/record/layout.hpp>
 #include <lgabench/statistics/names.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 namespace {
 
@@ -272,4 +272,4 @@ bool has_unseen(const RunResults& run) {
   });
 }
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

@@ -8,7 +8,7 @@
 #include <lgabench/statistics/about_suite.hpp>
 #include <lgabench/statistics/summary.hpp>
 
-namespace lgabench::report {
+namespace lgabench::statistics {
 
 /// A column of a table for readers.
 struct Column {
@@ -92,4 +92,4 @@ bool has_unseen(const RunResults& run);
 /// The command, and where `tell` whether demonstrations with it were given.
 std::string command_text(const std::string& utterance, bool seen, bool tell);
 
-}  // namespace lgabench::report
+}  // namespace lgabench::statistics

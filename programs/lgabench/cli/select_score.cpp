@@ -1,0 +1,339 @@
+#include <lgabench/cli/select_score.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include <lgabench/abstraction/best_product.hpp>
+#include <lgabench/abstraction/chat_model.hpp>
+#include <lgabench/abstraction/scene_score.hpp>
+#include <lgabench/abstraction/select_features.hpp>
+#include <lgabench/core/contains.hpp>
+#include <lgabench/core/error.hpp>
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/rounding.hpp>
+#include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/counted_progress.hpp>
+#include <lgabench/harness/expand.hpp>
+#include <lgabench/statistics/statistics.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+constexpr const char* ways_of_asking[] = {"flat", "structured", "named"};
+
+// Of one command, or summed over a group of them.
+struct Row {
+  std::string group, asking;
+  SceneScore score;
+  int questions = 0, otherwise = 0;  // otherwise: commands for which something else was selected than for the first
+  int unanswered = 0;                // commands that are in nothing else here
+
+  void add(const Row& other) {
+    score += other.score;
+    questions += other.questions;
+    otherwise += other.otherwise;
+    unanswered += other.unanswered;
+  }
+};
+
+using Groups = std::vector<std::pair<std::string, std::vector<std::string>>>;  // name, scenarios
+
+struct ScoredCommand {
+  std::string scenario, arm;  // arm: the one that gives it, where the scenario's commands name arms; else ""
+  std::string title;          // for a reader
+  bool ambiguous = false;
+  Row row;
+};
+
+// Of one way of asking.
+struct Scores {
+  std::vector<ScoredCommand> commands;
+  std::vector<std::string> sources;
+  std::vector<std::string> unanswered;  // a line for each question
+};
+
+// What `ask` returns, or nothing where an answer lacks, which is told.
+template <class Ask>
+auto answered(std::vector<std::string>& unanswered, Ask&& ask) -> std::optional<decltype(ask())> {
+  try {
+    return ask();
+  } catch (const Unanswered& e) {
+    unanswered.insert(unanswered.end(), e.questions.begin(), e.questions.end());
+  } catch (const Unread& e) {
+    unanswered.emplace_back(e.what());
+  }
+  return std::nullopt;
+}
+
+std::string title_of(const Scenario& scenario, const ScenarioCommand& command, const std::string& arm) {
+  if (!arm.empty()) return scenario.id + ", " + arm;
+  return scenario.commands.size() == 1 ? scenario.id : fmt::format("{}, \"{}\"", scenario.id, command.utterance);
+}
+
+// The arm that gives the command, where they name arms.
+std::string arm_of(const Scenario& scenario, int command) {
+  const auto names = [](const ScenarioCommand& one) { return !one.arm.empty(); };
+  if (std::none_of(scenario.commands.begin(), scenario.commands.end(), names)) return "";
+  for (const Arm& arm : scenario.tests) {
+    const std::vector<int> given = scenario.commands_of(arm.id);
+    if (contains(given, command)) return arm.id;
+  }
+  return "";
+}
+
+int commands_of(const Suite& suite, Truth truth) {
+  std::size_t commands = 0;
+  for (const std::string& id : suite_scenario_ids(suite, suite.design))
+    commands += suite_scenario(suite, id, truth).commands.size();
+  return static_cast<int>(commands);
+}
+
+Scores scores_of(const std::string& asking, const Suite& suite, Truth truth, int scenes,
+                 const WithAnswers& with_answers, CountedProgress& progress) {
+  Scores all;
+  for (const std::string& id : suite_scenario_ids(suite, suite.design)) {
+    const Scenario scenario = suite_scenario(suite, id, truth);
+    with_answers(scenario, [&](LanguageModel& model) {
+      Json first;
+      for (int i = 0; i < static_cast<int>(scenario.commands.size()); ++i) {
+        const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(i)];
+        const std::string arm = arm_of(scenario, i);
+        ScoredCommand& scored = all.commands.emplace_back(
+            ScoredCommand{id, arm, title_of(scenario, command, arm), command.ambiguous, {"", asking, {}}});
+        progress.tell_next();
+        const auto selection = answered(
+            all.unanswered, [&] { return select_as_asked(asking, scenario.command(i), scenario.space, model); });
+        if (!selection) {
+          scored.row.unanswered = 1;
+          continue;
+        }
+        add_source(selection->source, all.sources);
+        const Json kept = distribution_json(*selection);
+        if (first.is_null()) first = kept;
+        scored.row.score =
+            score(scenario, i, *selection, suite.design.layouts.front(), suite.design.scene_seed, scenes);
+        scored.row.questions = selection->cost.lm_queries;
+        scored.row.otherwise = kept == first ? 0 : 1;
+      }
+    });
+  }
+  return all;
+}
+
+// A command behind whose words stands a preference, and whether the hypotheses on it hold the truth: none where there
+// is no answer.
+struct Covered {
+  std::string scenario, name;
+  std::optional<bool> holds_truth;
+};
+
+// Those on which there are no hypotheses are left out.
+std::vector<Covered> coverage_of(const Suite& suite, Truth truth, const WithAnswers& with_answers,
+                                 std::vector<std::string>& unanswered) {
+  std::vector<Covered> all;
+  for (const std::string& id : suite_scenario_ids(suite, suite.design)) {
+    const Scenario scenario = suite_scenario(suite, id, truth);
+    const bool of_persons = scenario.json.contains("persons");
+    if (!of_persons && !scenario.json.contains("words")) continue;
+    with_answers(scenario, [&](LanguageModel& model) {
+      for (int i = 0; i < (of_persons ? static_cast<int>(scenario.commands.size()) : 1); ++i) {
+        const Command command = scenario.command(i);
+        const auto hypotheses = answered(unanswered, [&] { return model.hypotheses(command, scenario.space); });
+        if (hypotheses && hypotheses->empty()) continue;
+        Covered& one = all.emplace_back(Covered{id, of_persons ? command.utterance : id, {}});
+        if (hypotheses) one.holds_truth = covers_truth(*hypotheses, scenario, i);
+      }
+    });
+  }
+  return all;
+}
+
+// A row for each group with such commands, or a line for all of them.
+void print_coverage(const std::vector<Covered>& all, const Groups& groups, bool json) {
+  if (all.empty()) return;
+  for (const auto& [group, scenarios] : groups) {
+    int commands = 0, with_truth = 0, unanswered = 0;
+    for (const Covered& one : all) {
+      if (!contains(scenarios, one.scenario)) continue;
+      one.holds_truth ? ++commands : ++unanswered;
+      with_truth += one.holds_truth.value_or(false);
+    }
+    if (json && commands + unanswered > 0)
+      to_stdout("{}\n", canonical({{"group", group},
+                                   {"asked", "hypotheses"},
+                                   {"commands", commands},
+                                   {"covered", with_truth},
+                                   {"unanswered", unanswered}}));
+  }
+  if (json) return;
+  constexpr std::size_t most_names = 10;
+  std::size_t answered = 0;
+  std::vector<std::string> lacking;
+  for (const Covered& one : all) {
+    answered += one.holds_truth.has_value();
+    if (one.holds_truth == false) lacking.push_back(one.name);
+  }
+  const bool names_them = !lacking.empty() && lacking.size() <= most_names;
+  to_stdout("hypotheses on what the words leave unsaid hold the truth for {} of {} commands{}{}\n",
+            answered - lacking.size(), answered,
+            names_them ? fmt::format(", not for {}", fmt::join(lacking, ", ")) : "",
+            answered < all.size() ? fmt::format("; {} more have no answer", all.size() - answered) : "");
+}
+
+std::string share(int part, int of) { return of == 0 ? "-" : fixed(static_cast<double>(part) / of); }
+
+std::string exact_scenes(const SceneScore& score) {
+  if (score.scenes == 0) return "-";
+  const statistics::Interval interval = statistics::wilson(score.exact_scenes, score.scenes);
+  return fmt::format("{} [{}, {}]", share(score.exact_scenes, score.scenes), fixed(interval.low), fixed(interval.high));
+}
+
+Json to_json(const Row& row, bool by_arm) {
+  Json json{{"group", row.group},
+            {"asked", row.asking},
+            {"commands", row.score.commands},
+            {"exact_sets", row.score.exact_sets},
+            {"scenes", row.score.scenes},
+            {"exact_scenes", row.score.exact_scenes},
+            {"kept", row.score.kept},
+            {"meant", row.score.meant},
+            {"right", row.score.right},
+            {"questions", row.questions},
+            {"unanswered", row.unanswered}};
+  if (by_arm) json["otherwise"] = row.otherwise;
+  return json;
+}
+
+void print(const Row& row, bool by_arm) {
+  to_stdout("{:<14} {:<11} {:>4}  {:<18}  {:>5}  {:>9}  {:>6}  {:>9}{}{}\n", row.group, row.asking, row.score.commands,
+            exact_scenes(row.score), share(row.score.exact_sets, row.score.commands),
+            share(row.score.right, row.score.kept), share(row.score.right, row.score.meant), row.questions,
+            by_arm ? fmt::format("  {:>9}", share(row.otherwise, row.score.commands)) : "",
+            row.unanswered == 0 ? ""
+                                : fmt::format("  {} of {} commands have no answer", row.unanswered,
+                                              row.unanswered + row.score.commands));
+}
+
+// What a reader is told of a command: one whose scenes are not all exact, or that enters no mean.
+void print_misread(const Scores& scores) {
+  for (const ScoredCommand& command : scores.commands) {
+    const int scenes = command.row.score.scenes, exact = command.row.score.exact_scenes;
+    if (command.row.unanswered > 0 || (exact == scenes && !command.ambiguous)) continue;
+    std::vector<std::string> words{fmt::format("{} of {} scenes", exact, scenes)};
+    const SceneScore& score = command.row.score;
+    if (!score.wrongly_kept.empty()) words.push_back(fmt::format("kept: {}", fmt::join(score.wrongly_kept, ", ")));
+    if (!score.missed.empty()) words.push_back(fmt::format("missed: {}", fmt::join(score.missed, ", ")));
+    to_stdout("{}, {}{}: {}\n", command.row.asking, command.title, command.ambiguous ? " (ambiguous, in no mean)" : "",
+              fmt::join(words, "; "));
+  }
+}
+
+}  // namespace
+
+void print_scores(const Suite& suite, Truth truth, int scenes, bool json, bool expects_answers,
+                  const WithAnswers& with_answers) {
+  std::map<std::string, Scores> by_asking;
+  std::vector<std::string> left_out, unanswered;
+  CountedProgress progress("commands scored:", static_cast<int>(std::size(ways_of_asking)) * commands_of(suite, truth));
+  bool hopeless = false;
+  // What is left out of the table, and why, where nobody can answer so.
+  const auto unless_impossible = [&](const char* what, const std::function<void()>& ask) {
+    try {
+      ask();
+    } catch (const InputError& e) {
+      left_out.push_back(fmt::format("{}: {}", what, one_line(e.what())));
+    } catch (const Hopeless& e) {
+      hopeless = true;
+      left_out.push_back(fmt::format("{}: {}", what, one_line(e.what())));
+    }
+  };
+  for (const char* asking : ways_of_asking)
+    unless_impossible(asking, [&] {
+      const Scores scores = scores_of(asking, suite, truth, scenes, with_answers, progress);
+      unanswered.insert(unanswered.end(), scores.unanswered.begin(), scores.unanswered.end());
+      by_asking[asking] = scores;
+    });
+  progress.end();
+  std::vector<Covered> covered;
+  unless_impossible("hypotheses", [&] { covered = coverage_of(suite, truth, with_answers, unanswered); });
+  Groups families;
+  for (const auto& [name, scenarios] : suite.groups) families.emplace_back(name, scenarios);
+  // Those of the suite, or the arms where commands name them, then all.
+  using InGroup = std::function<bool(const ScoredCommand&)>;
+  std::vector<std::pair<std::string, InGroup>> groups;
+  for (const auto& [name, scenarios] : families)
+    groups.emplace_back(name,
+                        [list = scenarios](const ScoredCommand& command) { return contains(list, command.scenario); });
+  bool by_arm = false;
+  for (const ScoredCommand& command : by_asking.at("named").commands) {
+    const auto same = [&command](const auto& group) { return group.first == command.arm; };
+    if (command.arm.empty() || std::any_of(groups.begin(), groups.end(), same)) continue;
+    by_arm = true;
+    groups.emplace_back(command.arm, [arm = command.arm](const ScoredCommand& one) { return one.arm == arm; });
+  }
+  groups.emplace_back("all", [](const ScoredCommand&) { return true; });
+  families.emplace_back("all", suite_scenario_ids(suite, suite.design));
+
+  std::vector<std::string> sources;
+  for (const char* asking : {"structured", "flat"})
+    if (by_asking.count(asking) > 0)
+      for (const std::string& source : by_asking[asking].sources) add_source(source, sources);
+  if (!json)
+    to_stdout("answers of {}; {} scenes of each arm\n\n{:<14} {:<11} {:>4}  {:<18}  {:>5}  {:>9}  {:>6}  {:>9}{}\n",
+              sources.empty() ? "none" : fmt::format("{}", fmt::join(sources, " and ")), scenes, "", "asked", "n",
+              "scenes exact", "sets", "precision", "recall", "questions", by_arm ? "  otherwise" : "");
+  for (const auto& [group, is_in] : groups)
+    for (const char* asking : ways_of_asking) {
+      const auto scores = by_asking.find(asking);
+      if (scores == by_asking.end()) continue;
+      Row row{group, asking, {}};
+      for (const ScoredCommand& command : scores->second.commands)
+        if (is_in(command) && !command.ambiguous) row.add(command.row);
+      json ? to_stdout("{}\n", canonical(to_json(row, by_arm))) : print(row, by_arm);
+    }
+  const std::string why = fmt::format("{}{}", fmt::join(left_out, "\n"), left_out.empty() ? "" : "\n");
+  if (json)
+    to_stderr("{}", why);
+  else
+    to_stdout(
+        "\nn: commands; sets: share of them with no pair of type and texture wrong; precision and recall of the "
+        "objects kept.\n{}{}",
+        by_arm ? "otherwise: share of them for which something else was selected than for the scenario's first.\n" : "",
+        why);
+  print_coverage(covered, families, json);
+  for (const char* asking : ways_of_asking) {
+    const auto scores = by_asking.find(asking);
+    if (!json && scores != by_asking.end() && std::string(asking) != "named") print_misread(scores->second);
+  }
+  for (const std::string& question : unanswered) to_stderr("no answer: {}\n", one_line(question));
+  if (!unanswered.empty())
+    throw MethodError(fmt::format("{} questions have no answer; their commands are in no mean", unanswered.size()));
+  if (hopeless) throw MethodError("the model gives no answers that can be read in a form that was left out");
+  if (expects_answers && sources.empty()) throw InputError("no answer was scored: " + left_out.front());
+}
+
+void write_best_products(const Suite& suite, Truth truth, const std::filesystem::path& file) {
+  constexpr int scenes = 1000;
+  Json answers = Json::array();
+  CountedProgress progress("commands solved:", commands_of(suite, truth));
+  for (const std::string& id : suite_scenario_ids(suite, suite.design)) {
+    const Scenario scenario = suite_scenario(suite, id, truth);
+    const std::vector<FeatureSet> best =
+        best_products(scenario, suite.design.layouts.front(), scenes, [&progress] { progress.tell_next(); });
+    for (std::size_t i = 0; i < best.size(); ++i)
+      answers.push_back(Json{{"space", scenario.space.id},
+                             {"scenario", scenario.answers_of},
+                             {"command", scenario.commands[i].utterance},
+                             {"target", to_json(best[i])}});
+  }
+  const std::string how = fmt::format("coordinate ascent on {} training scenes a command, from the truth", scenes);
+  write_file(file, Json{{"model", "best single product"}, {"how", how}, {"answers", answers}}.dump(1) + "\n");
+  to_stdout("{}: {} commands\n", file.string(), answers.size());
+}
+
+}  // namespace lgabench::cli

@@ -1,0 +1,134 @@
+#include <lgabench/leaderboard/overview.hpp>
+
+#include <fmt/format.h>
+
+#include <lgabench/core/contains.hpp>
+#include <lgabench/core/rounding.hpp>
+#include <lgabench/leaderboard/areas.hpp>
+#include <lgabench/leaderboard/titles.hpp>
+#include <lgabench/statistics/about_suite.hpp>
+#include <lgabench/statistics/bootstrap.hpp>
+
+namespace lgabench::leaderboard {
+namespace {
+
+using document::Grid;
+using document::Paragraph;
+using document::reading;
+using document::Span;
+
+// The arms of a preset, in the order in which its scenarios name them.
+std::vector<std::string> arms_of(const Setting& setting) {
+  std::vector<std::string> arms;
+  for (const Setting::Scenario& scenario : setting.scenarios)
+    for (const std::string& arm : scenario.arms)
+      if (!contains(arms, arm)) arms.push_back(arm);
+  return arms;
+}
+
+// A row's name, with its policy and answers where they are not the usual ones.
+void add_named_row(Grid& grid, const NamedStanding& s) {
+  add_row(grid, s);
+  put(grid, "method", 'l', Span(s.label));
+  put(grid, "policy", 'l', Span(s.policy));
+  put(grid, "answers", 'l', Span(answers_label(*s.entry)));
+}
+
+double mean_of(const Rates& rates) {
+  std::vector<double> scenarios;
+  for (const auto& policies : rates) {
+    std::vector<double> means;
+    for (const std::vector<double>& scenes : policies) means.push_back(statistics::mean(scenes));
+    scenarios.push_back(statistics::mean(means));
+  }
+  return statistics::mean(scenarios);
+}
+
+Grid along_demonstrations(const NamedTable& table, const std::string& arm) {
+  const Setting& setting = table.setting;
+  Grid grid = grid_of(table, "_demonstrations",
+                      fmt::format("Success in {}, by demonstrations", Titles(setting.suite).arm(arm)));
+  for (const NamedStanding& s : table.standings) add_named_row(grid, s);
+  for (const int n : setting.demonstrations) {
+    std::vector<Rates> rates;
+    for (const Standing& s : table.standings) rates.push_back(rates_of(*s.entry, arm, n));
+    const statistics::SharedResamples resamples(rates, setting.shared_scenes(),
+                                            fmt::format("leaderboard/results/{}/{}/{}", hash(setting), arm, n));
+    grid.heads.emplace_back(std::to_string(n));
+    grid.align += 'r';
+    for (std::size_t i = 0; i < rates.size(); ++i) {
+      const statistics::Interval interval = resamples.interval(i);
+      grid.rows[i].cells.emplace_back(Span::number(
+          fmt::format("{} [{}, {}]", fixed(mean_of(rates[i])), fixed(interval.low), fixed(interval.high))));
+    }
+  }
+  return grid;
+}
+
+Grid by_arm(const NamedTable& table, const std::vector<std::string>& arms, int n) {
+  const Titles titles(table.setting.suite);
+  Grid grid = grid_of(table, "_arms", fmt::format("Success in every arm, {} demonstration{}", n, n == 1 ? "" : "s"));
+  for (const NamedStanding& s : table.standings) {
+    add_named_row(grid, s);
+    for (const std::string& arm : arms)
+      put(grid, titles.arm(arm), 'r', Span::number(fixed(mean_of(rates_of(*s.entry, arm, n)))));
+  }
+  return grid;
+}
+
+// Markdown shows no captions.
+void add_captioned(document::Section& section, Grid grid) {
+  section.add<Paragraph>(reading, {{grid.caption + ":"}});
+  section.add<Grid>(reading, std::move(grid));
+}
+
+}  // namespace
+
+void add_results(document::Section& section, const NamedTable& table, const fs::path& board) {
+  const Setting& setting = table.setting;
+  section.add<Paragraph>(
+      reading,
+      {{what_was_played(setting) + " Ranks and episodes: ",
+        Span::link(Titles(setting.suite).suite(), (board / (setting.suite + ".html")).generic_string()), "."}});
+  if (table.standings.empty()) return;
+  if (table.steps) {
+    add_captioned(section, steps_grid(*table.steps, setting.suite, setting.name() + "_steps"));
+    section.add<Paragraph>(reading, {{statistics::words_of_steps}});
+    if (table.undisputed) section.add<Paragraph>(reading, {{words_of(*table.undisputed)}});
+  }
+  const std::vector<std::string> arms = arms_of(setting);
+  auto [arm, n] = main_column(setting);
+  if (!contains(arms, arm))  // a preset of before the suite had it
+    arm = table.track.arms.empty() ? arms.back() : table.track.arms.front();
+  add_captioned(section, along_demonstrations(table, arm));
+  if (arms.size() > 1) add_captioned(section, by_arm(table, arms, n));
+}
+
+Grid all_steps_grid(const Suites& suites) {
+  Grid grid;
+  grid.name = "steps";
+  grid.caption = "Success by what one policy is told, in each suite's main arm";
+  grid.heads = {"suite", "scenes",        "n",           "pixels",    "labels", "language",
+                "truth", "language adds", "left to win", "undisputed"};
+  grid.align = "llrrrrrrrr";
+  for (const auto& [suite, tables] : suites) {
+    const Titles titles(suite);
+    for (const NamedTable& table : tables) {
+      const std::optional<BoardSteps>& steps = table.steps;
+      if (!steps || table.track.kind != Track::abstraction) continue;
+      Grid::Row row{{},
+                    {Span::link(titles.suite(), "results/" + suite + ".md"), Span(titles.arm(steps->main.arm)),
+                     Span::number(std::to_string(steps->main.demonstrations))}};
+      for (const double success : steps->success) row.cells.emplace_back(Span::number(fixed(success)));
+      const statistics::Step& language = steps->steps[1];
+      row.cells.emplace_back(Span::number(
+          fmt::format("{} {}", signed_text(language.difference), statistics::signed_interval(language.interval))));
+      row.cells.emplace_back(Span::number(signed_text(steps->steps[2].difference)));
+      row.cells.emplace_back(Span::number(fixed(steps->undisputed[2].value_or(steps->success[2]))));
+      grid.rows.push_back(std::move(row));
+    }
+  }
+  return grid;
+}
+
+}  // namespace lgabench::leaderboard

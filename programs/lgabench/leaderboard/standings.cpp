@@ -1,0 +1,269 @@
+#include <lgabench/leaderboard/standings.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <tuple>
+
+#include <lgabench/abstraction/quality.hpp>
+#include <lgabench/leaderboard/areas.hpp>
+#include <lgabench/statistics/bootstrap.hpp>
+
+namespace lgabench::leaderboard {
+namespace {
+
+using statistics::mean;
+
+using WeightsOfScenarios = std::map<std::string, ArmWeights>;
+
+WeightsOfScenarios weights_in(const Setting& setting) {
+  WeightsOfScenarios all;
+  for (const Setting::Scenario& scenario : setting.scenarios) all[scenario.id] = weights_of(scenario);
+  return all;
+}
+
+}  // namespace
+
+Rates rates_of(const Entry& entry, const std::string& only_arm, int only_demonstrations) {
+  const Setting& setting = entry.setting;
+  const WeightsOfScenarios by_scenario = weights_in(setting);
+  std::map<std::pair<std::string, std::string>, std::map<std::uint64_t, std::vector<std::vector<double>>>> by_unit;
+  for (const PlayedCell& cell : entry.cells) {
+    const int n = cell.place.demonstrations;
+    if (!only_arm.empty() && ((n != 0 && n != only_demonstrations) || cell.outcomes.count(only_arm) == 0)) continue;
+    std::vector<double> scenes(static_cast<std::size_t>(setting.episodes));
+    const ArmWeights& weights = by_scenario.at(cell.place.scenario);
+    for (const auto& [arm, letters] : cell.outcomes) {
+      const auto own = weights.find(arm);
+      const double weight = !only_arm.empty()      ? arm == only_arm
+                            : own != weights.end() ? own->second
+                            : weights.empty()      ? 1 / static_cast<double>(cell.outcomes.size())
+                                                   : 0;
+      for (std::size_t i = 0; i < scenes.size(); ++i) scenes[i] += weight * is_success(letters[i]);
+    }
+    by_unit[{cell.place.scenario, cell.place.layout}][cell.place.seed].push_back(std::move(scenes));
+  }
+  Rates rates;
+  for (const Setting::Scenario& scenario : setting.scenarios)
+    for (const std::string& layout : setting.layouts) {
+      const auto played = by_unit.find({scenario.id, layout});
+      if (played == by_unit.end()) continue;  // a scenario without the arm
+      const auto& by_seed = played->second;
+      auto& unit = rates.emplace_back();
+      for (const std::uint64_t seed : setting.seeds) {
+        const auto own = by_seed.find(seed);  // one that learns nothing plays shared scenes once, for all seeds
+        const auto& cells = own == by_seed.end() ? by_seed.begin()->second : own->second;
+        std::vector<double>& scenes = unit.emplace_back(static_cast<std::size_t>(setting.episodes));
+        for (const std::vector<double>& cell : cells)
+          for (std::size_t i = 0; i < scenes.size(); ++i) scenes[i] += cell[i] / static_cast<double>(cells.size());
+      }
+    }
+  return rates;
+}
+
+namespace {
+
+void add_rates(Standing& standing) {
+  const Entry& entry = *standing.entry;
+  const WeightsOfScenarios weights = weights_in(entry.setting);
+  std::map<std::string, std::vector<double>> by_scenario;
+  std::map<int, std::map<std::string, std::vector<double>>> at;
+  std::map<std::string, std::map<std::string, std::vector<double>>> in_arm;
+  for (const PlayedCell& cell : entry.cells) {
+    double rate = static_cast<double>(cell.successes()) / cell.episodes();
+    if (const ArmWeights& own = weights.at(cell.place.scenario); !own.empty()) {
+      rate = 0;
+      for (const auto& [arm, weight] : own)
+        rate += weight * successes(cell.outcomes.at(arm)) / static_cast<double>(cell.outcomes.at(arm).size());
+    }
+    standing.episodes += cell.episodes();
+    standing.failed_cells += !cell.failed.empty();
+    by_scenario[cell.place.scenario].push_back(rate);
+    at[cell.place.demonstrations][cell.place.scenario].push_back(rate);
+    for (const auto& [arm, letters] : cell.outcomes)
+      in_arm[arm][cell.place.scenario].push_back(successes(letters) / static_cast<double>(letters.size()));
+  }
+  const auto over_scenarios = [](const std::map<std::string, std::vector<double>>& scenarios) {
+    std::vector<double> means;
+    for (const auto& scenario : scenarios) means.push_back(mean(scenario.second));
+    return mean(means);
+  };
+  for (const auto& [scenario, rates] : by_scenario) standing.in_scenario[scenario] = mean(rates);
+  for (const auto& [n, scenarios] : at) standing.at[n] = over_scenarios(scenarios);
+  for (const auto& [arm, scenarios] : in_arm) standing.in_arm[arm] = over_scenarios(scenarios);
+  standing.score = over_scenarios(by_scenario);
+  for (const std::string& axis : axes_of(entry.setting)) standing.areas[axis] = relative_area(entry, axis);
+}
+
+// The mean of a share over the cells' Selections: each command, each set and each kind of feature counts alike.
+std::optional<double> mean_share(const Entry& entry, std::optional<double> NameQuality::*share) {
+  std::vector<double> all;
+  for (const PlayedCell& cell : entry.cells) {
+    const auto lists = entry.phi.find(cell.place.scenario);
+    if (lists == entry.phi.end() || !cell.failed.empty()) continue;
+    for (const Json& command : lists->at(cell.phi))
+      for (const auto& set : read_quality(JsonReader(command.at("quality"), "quality")))
+        for (const NameQuality& names : {set.second.object_types, set.second.textures})
+          if (const std::optional<double> value = names.*share) all.push_back(*value);
+  }
+  return all.empty() ? std::nullopt : std::optional(mean(all));
+}
+
+void add_costs(Standing& standing) {
+  const Entry& entry = *standing.entry;
+  const auto cells = static_cast<double>(entry.cells.size()) - standing.failed_cells;
+  for (const PlayedCell& cell : entry.cells) {
+    if (!cell.failed.empty()) continue;  // what it cost is not known
+    standing.lm_queries += cell.lm_queries / cells;
+    standing.lm_tokens += cell.lm_tokens / cells;
+    standing.learn_s += cell.learn_s / cells;
+  }
+  standing.precision = mean_share(entry, &NameQuality::precision);
+  standing.recall = mean_share(entry, &NameQuality::recall);
+}
+
+// Success over the arms of the abstraction track.
+std::optional<double> in_track(const Standing& standing, const Track& track) {
+  std::vector<double> rates;
+  for (const std::string& arm : track.arms)
+    if (const auto found = standing.in_arm.find(arm); found != standing.in_arm.end()) rates.push_back(found->second);
+  return rates.empty() ? std::nullopt : std::optional(mean(rates));
+}
+
+// What the abstraction track says beside success over all arms.
+void add_gaps(std::vector<Standing>& all, const Track& track) {
+  std::optional<double> any, truth;
+  for (Standing& standing : all) {
+    standing.in_track = in_track(standing, track);
+    const Competitor& row = standing.entry->identity.row;
+    if (row.acts || policy_of(*standing.entry) != "heat_map" || !standing.entry->identity.reading.none()) continue;
+    if (row.id == "factorial" && row.options.value("input", Json()) == "object_mask") any = standing.in_track;
+    if (row.id == "human") truth = standing.in_track;
+  }
+  if (!any || !truth || *truth <= *any) return;
+  for (Standing& standing : all)
+    if (standing.in_track) standing.gap_closed = (*standing.in_track - *any) / (*truth - *any);
+}
+
+// Each entry's rank among those that are ranked, given all entries' shared resamples.
+void add_ranks(std::vector<Standing>& all, const statistics::SharedResamples& resamples) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!all[i].not_ranked.empty()) continue;
+    std::vector<double> p;
+    std::vector<bool> better;
+    for (std::size_t j = 0; j < all.size(); ++j) {
+      if (j == i || !all[j].not_ranked.empty()) continue;
+      p.push_back(resamples.p(i, j));
+      better.push_back(all[j].score > all[i].score);
+    }
+    const std::vector<double> adjusted = statistics::holm(p);
+    int rank = 1;
+    for (std::size_t k = 0; k < adjusted.size(); ++k) rank += better[k] && adjusted[k] <= statistics::alpha;
+    all[i].rank = rank;
+  }
+}
+
+// In the abstraction track: truths are public, so that nothing but a method on given answers can be ranked.
+std::string why_not_in_track(const Entry& entry, const Track& track) {
+  if (track.persons) return "";
+  if (track.answers.empty()) return "no ranks: the truths are public";
+  std::set<std::string> asked = provenances_of(entry);
+  asked.erase("none");
+  if (asked.empty() || to_string(entry.identity.answers) == track.answers) return "";
+  return "other answers than the frozen ones";
+}
+
+}  // namespace
+
+std::set<std::string> provenances_of(const Entry& entry) {
+  std::set<std::string> all;
+  for (const auto& scenario : entry.phi.items())
+    for (const Json& list : scenario.value())
+      for (const Json& command : list) all.insert(command.at("selection").at("provenance").get<std::string>());
+  return all;
+}
+
+std::string why_not_ranked(const Entry& entry, const Track& track) {
+  if (entry.identity.row.is_reference()) return "reference";
+  if (entry.identity.row.asks == "truth" || entry.identity.row.asks == "network")
+    return "asks for the " + entry.identity.row.asks;
+  if (entry.fresh() < 0) return "differs on fresh scenes";
+  if (!entry.was_replayed()) return "not yet replayed";
+  if (entry.replay_differed()) return "a replay differed";
+  const std::set<std::string> provenances = provenances_of(entry);
+  if (provenances.count("truth") > 0 || (!track.persons && provenances.count("simulated_edit") > 0))
+    return "the truth stands in for people";
+  if (entry.has_answers_as_submitted()) return as_submitted;
+  if (track.persons && entry.fresh() == 0) return "not yet played with other persons";
+  return "";
+}
+
+std::string policy_of(const Entry& entry) {
+  const Competitor& row = entry.identity.row;
+  const Json policy = (row.acts ? row.acts->options : row.options).value("policy", Json());
+  return policy.is_string() ? policy.get<std::string>() : "";
+}
+
+std::vector<Standing> standings(const std::vector<const Entry*>& table, const Track& track, Ranking ranking) {
+  std::vector<Standing> all;
+  std::vector<Rates> rates;
+  for (const Entry* entry : table) {
+    if (entry->is_withdrawn() || !entry->was_replayed()) continue;
+    if (ranking == Ranking::papers_network && !entry->identity.row.is_reference() && policy_of(*entry) != "regression")
+      continue;
+    Standing& standing = all.emplace_back();
+    standing.entry = entry;
+    standing.not_ranked = why_not_ranked(*entry, track);
+    if (standing.not_ranked.empty() && track.kind == Track::abstraction)
+      standing.not_ranked = why_not_in_track(*entry, track);
+    if (standing.not_ranked.empty() && !entry->identity.reading.none() && !track.names_read)
+      standing.not_ranked = names_were_read;
+    add_rates(standing);
+    add_costs(standing);
+    rates.push_back(rates_of(*entry));
+  }
+  if (all.empty()) return all;
+  const Setting& setting = all.front().entry->setting;
+  const statistics::SharedResamples resamples(rates, setting.shared_scenes(),
+                                          fmt::format("leaderboard/{}/{}", hash(setting), setting.scene_seed));
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].interval = resamples.interval(i);
+  add_ranks(all, resamples);
+  if (track.kind == Track::abstraction) add_gaps(all, track);
+  const auto is_reference = [](const Standing& s) { return s.entry->identity.row.is_reference(); };
+  const auto order = [&](const Standing& s) { return std::tuple(-s.score, is_reference(s), s.entry->id()); };
+  std::sort(all.begin(), all.end(), [&](const Standing& a, const Standing& b) { return order(a) < order(b); });
+  int before = 1;
+  for (Standing& standing : all)
+    if (standing.rank) before = *standing.rank = std::max(*standing.rank, before);
+  const auto random = std::find_if(all.begin(), all.end(),
+                                   [](const Standing& s) { return s.entry->identity.row.id == "random_object"; });
+  if (random != all.end())
+    for (Standing& standing : all) standing.below_random = !is_reference(standing) && standing.score < random->score;
+  return all;
+}
+
+std::vector<Standing> not_yet_replayed(const std::vector<const Entry*>& table) {
+  std::vector<Standing> all;
+  for (const Entry* entry : table) {
+    if (entry->is_withdrawn() || entry->was_replayed()) continue;
+    Standing& standing = all.emplace_back();
+    standing.entry = entry;
+    standing.not_ranked = why_not_ranked(*entry);
+    add_rates(standing);
+  }
+  return all;
+}
+
+std::vector<std::vector<const Entry*>> tables(const std::vector<Entry>& entries) {
+  std::map<std::tuple<std::string, std::string, std::string, std::uint64_t>, std::vector<const Entry*>> all;
+  for (const Entry& entry : entries)
+    all[{entry.setting.suite, entry.setting.preset, entry.identity.preset_sha256, entry.setting.scene_seed}].push_back(
+        &entry);
+  std::vector<std::vector<const Entry*>> list;
+  for (auto& item : all) list.push_back(std::move(item.second));
+  return list;
+}
+
+}  // namespace lgabench::leaderboard

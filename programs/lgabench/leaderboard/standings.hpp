@@ -1,0 +1,73 @@
+// The standings of one table: scores, intervals and ranks, from the outcomes alone.
+#pragma once
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <lgabench/leaderboard/entry.hpp>
+#include <lgabench/leaderboard/tracks.hpp>
+#include <lgabench/statistics/statistics.hpp>
+
+namespace lgabench::leaderboard {
+
+/// An entry in its table. A rate is a mean over scenarios of the share of successful episodes; an episode of a cell
+/// that the method failed is one that was lost. In a perturbed table (areas.hpp) score, interval, rates by
+/// demonstrations and by scenario are of areas under the curves of success against levels, over axes.
+struct Standing {
+  const Entry* entry = nullptr;
+  double score = 0;           // over all arms and numbers of demonstrations
+  statistics::Interval interval;  // 95 %
+  std::optional<int> rank;    // 1 + the entries that are significantly better, and no less than that of an entry with
+                              // more success; none where it is not ranked
+  std::string not_ranked;     // why; "" where it is ranked
+  bool below_random = false;  // its score is below that of the reference row random_object
+  std::map<int, double> at;   // rate by number of demonstrations; 0 of a row that learns nothing
+  std::map<std::string, double> in_arm, in_scenario;
+  std::map<std::string, std::optional<double>> areas;  // by axis, relative to the control
+  /// In the abstraction track: success over the arms that its file names, and how much of the distance from the mask of
+  /// any object to that of the truth it closes there; none where one of those two is no row of the table.
+  std::optional<double> in_track, gap_closed;
+  int episodes = 0, failed_cells = 0;
+  std::optional<double> precision, recall;            // of its Selections, mean over commands and kinds of features
+  double lm_queries = 0, lm_tokens = 0, learn_s = 0;  // of a cell that did not fail, on average
+};
+
+/// Shares of successes by scenario (and layout), training seed and test scene.
+using Rates = std::vector<std::vector<std::vector<double>>>;
+/// An entry's, over all arms and numbers of demonstrations; with an arm those of it alone, at one number of
+/// demonstrations, in the scenarios that have it.
+Rates rates_of(const Entry& entry, const std::string& only_arm = "", int only_demonstrations = 0);
+
+/// The mark of an entry whose answers are a file that its authors wrote, which may be a copy of the truth.
+inline constexpr const char* as_submitted = "answers as submitted";
+
+/// The mark of an entry that read names from pictures, in a table that does not rank by that (Track::names_read).
+inline constexpr const char* names_were_read = "names read from pictures";
+
+/// Where its Selections come from.
+std::set<std::string> provenances_of(const Entry& entry);
+
+/// Why an entry has no place among the ranked: "" for one that has.
+std::string why_not_ranked(const Entry& entry, const Track& track = {});
+
+/// The option of that name, of the method that acts: "regression" is the paper's network; "" where a method or a
+/// reference row has none.
+std::string policy_of(const Entry& entry);
+
+/// The entries of one ranking by score, among them those that have no rank. Entries that were withdrawn, or not yet
+/// replayed, are left out. All share their resamples of test scenes and training seeds (statistics/bootstrap.hpp),
+/// which makes the paired test of every two of them as cheap as a difference. Holm's correction is over the comparisons
+/// of each entry. Deterministic.
+/// @pre the entries have one setting
+std::vector<Standing> standings(const std::vector<const Entry*>& table, const Track& track = {},
+                                Ranking ranking = Ranking::any_policy);
+
+/// The entries of one table whose files are all that is known of them: what they claim, without interval and costs.
+std::vector<Standing> not_yet_replayed(const std::vector<const Entry*>& table);
+
+/// Entries that share a table, by suite, preset, its hash and scene seed.
+std::vector<std::vector<const Entry*>> tables(const std::vector<Entry>& entries);
+
+}  // namespace lgabench::leaderboard

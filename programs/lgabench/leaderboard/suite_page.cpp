@@ -1,0 +1,388 @@
+#include <lgabench/leaderboard/suite_page.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+#include <lgabench/core/rounding.hpp>
+#include <lgabench/leaderboard/answer_score.hpp>
+#include <lgabench/leaderboard/areas.hpp>
+#include <lgabench/leaderboard/board_steps.hpp>
+#include <lgabench/leaderboard/titles.hpp>
+#include <lgabench/statistics/about_suite.hpp>
+#include <lgabench/statistics/names.hpp>
+#include <lgabench/statistics/tables.hpp>
+
+namespace lgabench::leaderboard {
+namespace {
+
+using document::Chart;
+using document::Charts;
+using statistics::display_name;
+using document::Document;
+using document::Grid;
+using statistics::MethodStyle;
+using statistics::MethodStyles;
+using document::on_page;
+using document::Paragraph;
+using document::reading;
+using document::Section;
+using document::Series;
+using document::Span;
+using document::TableCell;
+
+constexpr std::size_t scenarios_of_a_row = 1000;  // data-row: the standing's number times this, and its scenario's + 1
+constexpr std::size_t curves = 8;                 // more would hide each other
+
+std::string amount(double value) { return value == 0 ? "–" : fixed(value, value < 10 ? 1 : 0); }
+
+// The rows with their names: the id, and those options, at every row that has them, by which two rows of one method
+// differ (one row's default is another's variant); then what else tells them apart.
+std::vector<NamedStanding> named(const std::vector<Standing>& standings, const Labels& words) {
+  std::map<std::pair<std::string, std::string>, std::set<Json>> values;  // by id and option
+  for (const Standing& s : standings)
+    for (const auto& [option, value] : s.entry->identity.row.options.items())
+      values[{s.entry->identity.row.own_name(), option}].insert(value);
+  for (const Standing& s : standings)  // an option that came later is not among a row's where it has its default
+    for (auto& [key, different] : values)
+      if (key.first == s.entry->identity.row.own_name() && !s.entry->identity.row.options.contains(key.second))
+        different.insert(Json());
+  std::set<std::string> telling;
+  for (const auto& [key, different] : values)
+    if (different.size() > 1) telling.insert(key.second);
+  const std::vector<std::string> options(telling.begin(), telling.end());
+  std::vector<NamedStanding> all;
+  std::map<std::string, int> times;
+  std::map<std::pair<std::string, std::string>, int> labelled;
+  for (const Standing& standing : standings) {
+    NamedStanding& s = all.emplace_back(NamedStanding{standing});
+    const Identity& identity = s.entry->identity;
+    s.name = identity.row.own_name();
+    for (const auto& [option, value] : identity.row.options.items())
+      if (telling.count(option) > 0) s.name += fmt::format("+{}={}", option, option_text(value));
+    s.name += identity.reading.suffix();
+    ++times[s.name];
+    s.label = label_of(words, *s.entry, options);
+    s.policy = policy_label(words, *s.entry);
+    // One model's answers to all commands, where "recorded" may be several models'.
+    const auto* from = std::get_if<RecordedAnswers>(&identity.answers);
+    if (from && from->source != "recorded" && !s.is_reference()) s.label += ", answers " + spaced(from->source);
+    ++labelled[{s.label, s.policy}];
+  }
+  for (NamedStanding& s : all) {
+    const Identity& identity = s.entry->identity;
+    const std::string id = s.entry->id().substr(0, 6);
+    if (times[s.name] > 1)
+      s.name += fmt::format("+version={}+answers={}+engine={}+id={}", identity.row.version,
+                            to_string(identity.answers).substr(0, 20), identity.engine, id);
+    if (labelled[{s.label, s.policy}] > 1) s.label += fmt::format(", version {}, {}", identity.row.version, id);
+  }
+  return all;
+}
+
+// The first row of a method is its best, as rows stand by rank and success, and stays in view; so does the best whose
+// policy was trained. Each file of answers that somebody submits competes for itself, and so does each way to read
+// names.
+void mark_more(std::vector<NamedStanding>& standings) {
+  std::set<std::string> known;
+  for (NamedStanding& s : standings) {
+    const std::string answers = s.entry->has_answers_as_submitted() ? s.entry->identity.answers_sha256 : "";
+    const Identity& identity = s.entry->identity;
+    const std::string untrained = policy_of(*s.entry) == "centroid" ? " untrained" : "";
+    s.more = !known.insert(identity.row.own_name() + identity.reading.suffix() + " " + answers + untrained).second;
+  }
+}
+
+// What a row is called; its options under the pointer.
+TableCell named_cell(const NamedStanding& s) {
+  Span name(s.label);
+  if (const std::string options = display_name(s.name); options != name.text) name.title = options;
+  return name;
+}
+
+MethodStyles styles_of(const NamedTable& table) {
+  std::vector<std::string> names;
+  for (const NamedStanding& s : table.standings) names.push_back(s.name);
+  return MethodStyles(names);
+}
+
+TableCell rate_button(const std::string& text, double rate, std::size_t row) {
+  TableCell cell(Span::number(text));
+  cell.rate = rate;
+  cell.episodes = row;
+  return cell;
+}
+
+// Success, its interval small beside it.
+TableCell score_button(const Standing& s, std::size_t row) {
+  TableCell cell = rate_button(score_text(s.score), s.score, row);
+  if (s.below_random) cell.spans.push_back(below_random_mark());
+  cell.spans.push_back(Span::number(" " + interval_text(s), "", document::Emphasis::detail));
+  return cell;
+}
+
+// A column without a value in any row says nothing.
+void drop_empty_columns(Grid& grid) {
+  for (std::size_t k = grid.heads.size(); k-- > 3;) {
+    if (!std::all_of(grid.rows.begin(), grid.rows.end(),
+                     [k](const Grid::Row& row) { return row.cells[k].text() == "–" || row.cells[k].text().empty(); }))
+      continue;
+    const auto at = static_cast<std::ptrdiff_t>(k);
+    grid.heads.erase(grid.heads.begin() + at);
+    grid.align.erase(k, 1);
+    for (Grid::Row& row : grid.rows) row.cells.erase(row.cells.begin() + at);
+  }
+}
+
+TableCell rate_if_any(const std::optional<double>& rate) { return Span::number(rate ? fixed(*rate) : "–"); }
+
+// The table, with a column for each number of demonstrations, and for each arm where there are several.
+Grid standings_grid(const NamedTable& table, std::size_t first_row) {
+  const Setting& setting = table.setting;
+  const Titles titles(setting.suite);
+  const std::vector<std::string> axes = axes_of(setting);
+  std::set<std::string> arms;
+  for (const Standing& s : table.standings)
+    for (const auto& arm : s.in_arm)
+      if (axes.empty()) arms.insert(arm.first);
+  const MethodStyles styles = styles_of(table);
+  Grid grid = grid_of(table, "", title_of(table));
+  for (const NamedStanding& s : table.standings) {
+    add_row(grid, s);
+    put(grid, "rank", 'r', rank_span(s));
+    put(grid, "method", 'l', named_cell(s));
+    grid.rows.back().cells.back().style = s.is_reference() ? MethodStyle() : styles(s.name);
+    put(grid, axes.empty() ? "success" : "area", 'r', score_button(s, (first_row + table.row(s)) * scenarios_of_a_row));
+    put(grid, "policy", 'l', Span(s.policy));
+    if (setting.demonstrations.size() > 1)
+      for (const int n : setting.demonstrations) {
+        const auto at = s.at.count(n) ? s.at.find(n) : s.at.find(0);
+        put(grid, fmt::format("n = {}", n), 'r',
+            at == s.at.end() ? TableCell("") : TableCell(Span::number(fixed(at->second))));
+      }
+    if (table.track.kind == Track::abstraction) {
+      put(grid, "where it decides", 'r', rate_if_any(s.in_track));
+      put(grid, "gap closed", 'r', rate_if_any(s.gap_closed));
+    }
+    if (!axes.empty()) {
+      const double control = control_success(*s.entry);
+      put(grid, "control", 'r', rate_if_any(control));
+      put(grid, "of the control", 'r', rate_if_any(control > 0 ? std::optional(s.score / control) : std::nullopt));
+    }
+    for (const std::string& axis : axes) put(grid, titles.arm(axis), 'r', rate_if_any(s.areas.at(axis)));
+    if (arms.size() > 1)
+      for (const std::string& arm : arms) put(grid, titles.arm(arm), 'r', rate_if_any(s.in_arm.at(arm)));
+    if (table.undisputed)
+      put(grid, titles.arm(table.undisputed->main.arm) + ", undisputed", 'r',
+          rate_if_any(success(*table.undisputed, *s.entry)));
+    put(grid, "known", 'r',
+        document::Spans{Span(tier_and_marks(s)), Span(" " + replayed_on(*s.entry), document::Emphasis::detail)});
+  }
+  drop_empty_columns(grid);
+  return grid;
+}
+
+// What rows are based on and what they cost, when they were computed and replayed, and by whom.
+Grid details_grid(const NamedTable& table) {
+  Grid grid = grid_of(table, "_details", title_of(table) + ": answers, costs, dates and sources");
+  for (const NamedStanding& s : table.standings) {
+    const Json& score = s.entry->score;
+    const auto cost = [&s](double value) { return Span::number(s.is_reference() ? "–" : amount(value)); };
+    add_row(grid, s);
+    put(grid, "method", 'l', named_cell(s));
+    put(grid, "policy", 'l', Span(s.policy));
+    put(grid, "answers", 'l', Span(answers_label(*s.entry)));
+    put(grid, "answers exact", 'r', Span::number(score.is_null() ? "–" : fixed(scenes_exact(score))));
+    put(grid, "φ̂ precision", 'r', rate_if_any(s.precision));
+    put(grid, "φ̂ recall", 'r', rate_if_any(s.recall));
+    put(grid, "questions", 'r', cost(s.lm_queries));
+    put(grid, "tokens", 'r', cost(s.lm_tokens));
+    put(grid, "training s", 'r', cost(s.learn_s));
+    put(grid, "computed", 'l', Span(computed_on(*s.entry)));
+    put(grid, "replayed", 'l', Span(replayed_on(*s.entry)));
+    put(grid, "source", 'l', source_span(*s.entry));
+    put(grid, "by", 'l', by_span(*s.entry));
+    put(grid, "id", 'l', id_span(*s.entry));
+  }
+  drop_empty_columns(grid);
+  return grid;
+}
+
+// The best entries along the demonstrations.
+Chart curve_chart(const NamedTable& table) {
+  Chart chart;
+  const std::vector<int>& demonstrations = table.setting.demonstrations;
+  chart.title = "Success against the number of demonstrations";
+  chart.subtitle =
+      fmt::format("mean over {} scenarios; each method's best row, trained and untrained, and reference rows",
+                  table.setting.scenarios.size());
+  chart.axis = "demonstrations";
+  chart.alternative = chart.title + ", as in the table's columns";
+  const double pad = .08 * (demonstrations.back() - demonstrations.front());
+  chart.left = demonstrations.front() - pad;
+  chart.right = demonstrations.back() + pad;
+  for (const int n : demonstrations) chart.ticks.push_back({static_cast<double>(n), std::to_string(n)});
+  const MethodStyles styles = styles_of(table);
+  std::size_t drawn = 0;
+  for (const NamedStanding& s : table.standings) {
+    if (!s.is_reference() && (s.more || ++drawn > curves)) continue;
+    const std::string name = s.full_name();
+    Series series{s.is_reference() ? Series::reference : Series::measured, name, styles(s.name), true};
+    for (const int n : demonstrations)
+      if (const auto at = s.at.count(n) ? s.at.find(n) : s.at.find(0); at != s.at.end()) {
+        const double rate = at->second;
+        series.points.push_back(
+            {static_cast<double>(n), rate, rate, rate, fmt::format("{} at {}: {}", name, n, fixed(rate))});
+      }
+    chart.series.push_back(std::move(series));
+  }
+  return chart;
+}
+
+// Which scenarios an entry can do: a colour for each.
+Grid heat_grid(const NamedTable& table, std::size_t first_row) {
+  const Titles titles(table.setting.suite);
+  Grid grid =
+      grid_of(table, "_scenarios",
+              axes_of(table.setting).empty() ? "Success in each scenario, over all arms and numbers of demonstrations"
+                                             : "Area in each scenario, over its axes and numbers of demonstrations");
+  for (const NamedStanding& s : table.standings) {
+    std::size_t number = (first_row + table.row(s)) * scenarios_of_a_row;
+    add_row(grid, s);
+    put(grid, "method", 'l', named_cell(s));
+    put(grid, "policy", 'l', Span(s.policy));
+    for (const Setting::Scenario& scenario : table.setting.scenarios) {
+      const double rate = s.in_scenario.at(scenario.id);
+      put(grid, titles.scenario(scenario.id), 'r', rate_button(fixed(rate), rate, ++number));
+    }
+  }
+  return grid;
+}
+
+}  // namespace
+
+std::string capital(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+Grid grid_of(const NamedTable& table, const std::string& what, std::string caption) {
+  Grid grid;
+  grid.name = table.setting.name() + what;
+  grid.caption = std::move(caption);
+  return grid;
+}
+
+void add_row(Grid& grid, const NamedStanding& s) { grid.rows.push_back({{}, {}, s.is_reference(), s.more}); }
+
+std::vector<NamedTable> named_tables(const std::vector<const Entry*>& table, const Labels& labels,
+                                     const Tracks& tracks) {
+  const Setting& setting = table.front()->setting;
+  const Track track = track_of(tracks, setting);
+  std::vector<NamedTable> all;
+  for (const Ranking ranking : rankings_of(track)) {
+    const std::vector<Standing> standing = standings(table, track, ranking);
+    if (!all.empty() && std::none_of(standing.begin(), standing.end(), [](const Standing& s) { return s.rank; }))
+      continue;
+    NamedTable& one = all.emplace_back();
+    one.setting = setting;
+    one.track = track;
+    one.ranking = ranking;
+    if (track.kind == Track::abstraction) one.undisputed = undisputed_of(setting);
+    one.steps = steps_of(standing, track.answers, one.undisputed);
+    one.standings = named(standing, labels);
+    mark_more(one.standings);
+    if (all.size() > 1) continue;
+    one.waiting = named(not_yet_replayed(table), labels);
+    one.withdrawn = static_cast<int>(table.size() - one.standings.size() - one.waiting.size());
+  }
+  return all;
+}
+
+std::string title_of(const NamedTable& table) {
+  return fmt::format("{}, {}", Titles(table.setting.suite).suite(), to_string(table.ranking));
+}
+
+// What a page calls it: its ranking, and its preset where another table of the page has that ranking too.
+std::string section_title(const NamedTable& table, const std::vector<NamedTable>& tables) {
+  const std::string ranking = capital(to_string(table.ranking));
+  const auto alike = std::count_if(tables.begin(), tables.end(),
+                                   [&table](const NamedTable& one) { return one.ranking == table.ranking; });
+  if (alike < 2) return ranking;
+  std::string preset = table.setting.preset;
+  std::replace(preset.begin(), preset.end(), '_', ' ');
+  return fmt::format("{}, {}", ranking, preset);
+}
+
+std::string what_was_played(const Setting& setting) {
+  const auto presets = statistics::about_suite(setting.suite).presets;
+  const auto own = presets.find(setting.preset);
+  return fmt::format(
+      "{}{} scenarios, {} demonstrations, {} training seed{}, {} test scenes of each arm and {}; scene seed {}.",
+      own == presets.end() ? "" : own->second + " ", setting.scenarios.size(), fmt::join(setting.demonstrations, ", "),
+      setting.seeds.size(), setting.seeds.size() == 1 ? "" : "s", setting.episodes,
+      setting.test_scenes == TestScenes::per_seed ? "training seed" : "scenario", setting.scene_seed);
+}
+
+document::Document suite_document(const std::string& suite, const std::vector<NamedTable>& tables) {
+  Document document;
+  document.suite = suite;
+  document.title = "lgabench leaderboard: " + Titles(suite).suite();
+  document.question = statistics::about_suite(suite).question;
+  document.description = document.question.empty() ? "Published results of lgabench." : document.question;
+  document.headline = {Span::link("All suites", "index.html"),
+                       ". Success is the mean over scenarios of the share of successful episodes, over all arms and "
+                       "numbers of demonstrations. A click on a number shows the episodes behind it, two of them as "
+                       "pictures."};
+  std::size_t first_row = 0, number = 0;
+  for (const NamedTable& table : tables) {
+    const std::string id = fmt::format("table{}", ++number);
+    Section section{id, section_title(table, tables)};
+    section.add<Paragraph>(reading, {{what_was_played(table.setting) + " " + words_of(table.ranking, &table.track)}});
+    if (!axes_of(table.setting).empty())
+      section.add<Paragraph>(
+          reading,
+          {{"The area is what entries are compared by: the mean success from the control to an axis’ last level, "
+            "averaged over axes and scenarios. \"Of the control\" divides it by the success in the control; 1 means no "
+            "loss. "
+            "Each axis has its own column. The best constant action loses nothing because it has little to lose; "
+            "compare its control."}});
+    if (!table.standings.empty()) section.add<Grid>(reading, standings_grid(table, first_row));
+    if (auto note = below_random_note(table.standings)) section.add<Paragraph>(reading, std::move(*note));
+    if (table.undisputed) section.add<Paragraph>(reading, {{words_of(*table.undisputed)}});
+    if (!table.standings.empty())
+      section.add<Grid>(reading, details_grid(table), "Answers, costs, dates and sources of these rows");
+    if (auto waiting = waiting_grid(table)) section.add<Grid>(reading, std::move(*waiting));
+    if (table.withdrawn > 0)
+      section.add<Paragraph>(reading,
+                             {{fmt::format("{} entries were withdrawn; their files remain.", table.withdrawn)}});
+    document.sections.push_back(std::move(section));
+    if (table.ranking != Ranking::papers_network)
+      if (auto answers = answers_section(table, id + "-answers")) document.sections.push_back(std::move(*answers));
+    if (table.standings.empty()) continue;
+    if (table.steps) {
+      Section added{id + "-steps", "What labels, language and the truth add"};
+      added.add<Grid>(reading, steps_grid(*table.steps, suite, table.setting.name() + "_steps"));
+      added.add<Paragraph>(reading,
+                           {{fmt::format("{} Brackets: 95 % intervals over test scenes and training seeds of these "
+                                         "scenarios, and over other scenarios as well.",
+                                         statistics::words_of_steps)}});
+      document.sections.push_back(std::move(added));
+    }
+    if (table.setting.demonstrations.size() > 1) {
+      Section curve{id + "-curves", "Demonstrations"};
+      curve.add<Charts>(on_page, {{curve_chart(table)}});
+      document.sections.push_back(std::move(curve));
+    }
+    Section heat{id + "-scenarios", "Scenarios"};
+    heat.add<Grid>(reading, heat_grid(table, first_row));
+    document.sections.push_back(std::move(heat));
+    first_row += table.standings.size();
+  }
+  document.sections.push_back(words_of_the_board());
+  return document;
+}
+
+}  // namespace lgabench::leaderboard

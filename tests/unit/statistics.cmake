@@ -1,0 +1,1 @@
+lgabench_unit_test(statistics_test SOURCES statistics_test.cpp bootstrap_test.cpp phi_words_test.cpp LINK lgabench_statistics)
