@@ -276,6 +276,7 @@ class MobileType final : public EnvironmentType {
 
   const std::string& id() const override { return id_; }
   const std::vector<TaskInfo>& tasks() const override { return tasks_; }
+  const std::vector<std::string>& spaces() const override { return spaces_; }
   const std::vector<std::string>& failures() const override { return failures_; }
   const ActionSpace& action_space() const override { return plans(); }
   const ActionSpace& action_space_of(const TaskInfo& task) const override {
@@ -347,6 +348,7 @@ class MobileType final : public EnvironmentType {
  private:
   std::string id_ = "mobile";
   std::vector<TaskInfo> tasks_;
+  const std::vector<std::string> spaces_{"household_mobile", "household"};
   std::vector<std::string> failures_;
 };
 

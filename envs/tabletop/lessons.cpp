@@ -9,10 +9,10 @@
 #include <common/sampling.hpp>
 #include <lgabench/core/feature_space.hpp>
 #include <lgabench/core/files.hpp>
+#include <opencv2/imgproc.hpp>
 #include <readers/features.hpp>
 #include <readers/grow.hpp>
 #include <readers/reader.hpp>
-#include <opencv2/imgproc.hpp>
 #include <tabletop/placement.hpp>
 #include <tabletop/renderer.hpp>
 

@@ -187,6 +187,10 @@ class TabletopType final : public EnvironmentType {
 
   const std::string& id() const override { return id_; }
   const std::vector<TaskInfo>& tasks() const override { return tasks_; }
+  const std::vector<std::string>& spaces() const override { return spaces_; }
+  std::optional<Showcase> showcase() const override {
+    return Showcase{"household", "yellow", "tabletop", "pallet", {.5, 0}};
+  }
   const std::vector<std::string>& failures() const override { return failures_; }
   const ActionSpace& action_space() const override { return two_poses(); }
   PictureSize picture_size() const override { return Workspace::picture; }
@@ -278,6 +282,7 @@ class TabletopType final : public EnvironmentType {
   std::string id_ = "tabletop";
   int most_instances_ = most_bodies;
   std::vector<TaskInfo> tasks_;
+  const std::vector<std::string> spaces_{"tabletop", "household"};
   std::vector<std::string> failures_;
 };
 

@@ -1,6 +1,6 @@
 // Light of another colour: each channel has a gain of its own; the level is the largest deviation from 1.
-#include <lgabench/core/perturbations.hpp>
 #include <axes/pixels.hpp>
+#include <lgabench/core/perturbations.hpp>
 
 #include <algorithm>
 #include <cmath>

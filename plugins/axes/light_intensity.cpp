@@ -1,7 +1,7 @@
 // Brighter or darker light: a gain on the whole picture. The lit table has 196 of 255, so that a high gain clips, as a
 // sensor does.
-#include <lgabench/core/perturbations.hpp>
 #include <axes/pixels.hpp>
+#include <lgabench/core/perturbations.hpp>
 
 namespace lgabench::perturbations {
 

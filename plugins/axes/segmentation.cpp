@@ -1,6 +1,6 @@
 // A worse segmenter: borders that are too wide and too narrow by turns, objects that are missed, wrong labels.
-#include <lgabench/core/perturbations.hpp>
 #include <axes/pixels.hpp>
+#include <lgabench/core/perturbations.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // A worse camera: a blurred picture, and Gaussian noise on it.
-#include <lgabench/core/perturbations.hpp>
 #include <axes/pixels.hpp>
+#include <lgabench/core/perturbations.hpp>
 
 #include <opencv2/imgproc.hpp>
 

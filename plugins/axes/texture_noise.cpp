@@ -1,7 +1,7 @@
 // Surfaces look otherwise than their labels say: hues turned, each object's one way or the other, and speckle. Where a
 // truth names textures no hue is turned by more than 20 degrees, beyond which red would be orange.
-#include <lgabench/core/perturbations.hpp>
 #include <axes/pixels.hpp>
+#include <lgabench/core/perturbations.hpp>
 
 #include <algorithm>
 #include <cmath>

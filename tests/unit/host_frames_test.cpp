@@ -252,9 +252,8 @@ TEST(Messages, shadows_arrive_where_every_step_has_them) {
     EXPECT_TRUE(d.steps[0].observation.shadows.empty());
   host::DemonstrationFile packed = host::pack(layout, {{{"a", {}}, {one}}});
   packed.header["arrays"]["shadows"]["shape"] = {1, 1, 1};
-  EXPECT_SAYS(
-      message_of<InputError>([&] { host::unpack(layout, JsonReader(packed.header, "learn"), packed.file); }),
-      "an array of the shape of ids");
+  EXPECT_SAYS(message_of<InputError>([&] { host::unpack(layout, JsonReader(packed.header, "learn"), packed.file); }),
+              "an array of the shape of ids");
 }
 
 TEST(Messages, an_observation_arrives_through_shared_memory) {

@@ -186,10 +186,7 @@ TEST_F(AnswerLedgerTest, a_revision_stands_on_the_answer_before_it) {
 }
 
 Json ask_for_hypotheses() {
-  return {{"type", "ask"},
-          {"how", "hypotheses"},
-          {"command", host::to_json(command)},
-          {"space", host::to_json(space)}};
+  return {{"type", "ask"}, {"how", "hypotheses"}, {"command", host::to_json(command)}, {"space", host::to_json(space)}};
 }
 
 Selection red(const std::string& object_type) {

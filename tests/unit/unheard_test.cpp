@@ -177,7 +177,8 @@ TEST(Unheard, NoRuleThatDoesNotUnderstandTheCommandFindsItsTarget) {
         for (const auto& [rule, share] :
              found_by(scenario, fmt::format("unseen_{}", variant), demonstrations, seeds, scenes)) {
           EXPECT_LE(share, .25) << rule << ", " << scenario.id << ", n = " << demonstrations;
-          EXPECT_LT(statistics::wilson(share * seeds * scenes, seeds * scenes).high, .30) << rule << ", " << scenario.id;
+          EXPECT_LT(statistics::wilson(share * seeds * scenes, seeds * scenes).high, .30)
+              << rule << ", " << scenario.id;
           RecordProperty(fmt::format("{} {} {}", scenario.id, demonstrations, rule), fmt::format("{:.3f}", share));
         }
       }

@@ -66,6 +66,15 @@ const EnvironmentType& find_environment(const std::string& id) {
   return *type;
 }
 
+const EnvironmentType& environment_with_task(const std::string& id) {
+  for (const std::string& name : environment_ids()) {
+    const EnvironmentType& environment = find_environment(name);
+    for (const TaskInfo& task : environment.tasks())
+      if (task.id == id) return environment;
+  }
+  throw InputError(none_named("task", id, installed_task_ids()));
+}
+
 std::vector<TaskInfo> installed_tasks() {
   std::vector<TaskInfo> all;
   for (const std::string& id : environment_ids())

@@ -59,6 +59,14 @@ class NothingToShow : public InputError {
   ~NothingToShow() override;
 };
 
+/// What a contact sheet shows of an environment's objects, each alone in the middle of a scene: every type of a feature
+/// space in one texture, and every texture of one on one type.
+struct Showcase {
+  std::string types_of, texture;  // the feature space's id; the texture
+  std::string textures_of, type;
+  Vec2 position_m;
+};
+
 /// A kind of environment: one constant object for as long as the program runs. Any thread may call it, but for draw().
 class EnvironmentType {
  public:
@@ -67,6 +75,10 @@ class EnvironmentType {
   virtual const std::string& id() const = 0;
   /// The environment's tasks, in the order in which tables and checks name them.
   virtual const std::vector<TaskInfo>& tasks() const = 0;
+  /// Feature spaces whose objects its scenes can show, the usual one first.
+  virtual const std::vector<std::string>& spaces() const = 0;
+  /// None, as by default, where contact sheets show its scenes alone.
+  virtual std::optional<Showcase> showcase() const { return std::nullopt; }
   /// Every word that step() may give for a failure but the framework's own, in the order in which reports list them.
   virtual const std::vector<std::string>& failures() const = 0;
 
@@ -140,6 +152,8 @@ const EnvironmentType& find_environment(const std::string& id);
 
 /// Ids of all that are installed, sorted.
 std::vector<std::string> environment_ids();
+/// The installed environment that has the task. @throws InputError that lists the known tasks.
+const EnvironmentType& environment_with_task(const std::string& id);
 
 /// Tasks of all that are installed.
 std::vector<TaskInfo> installed_tasks();

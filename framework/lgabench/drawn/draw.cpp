@@ -13,7 +13,9 @@
 namespace lgabench::drawn {
 namespace {
 
-constexpr const char* layout = "continuous";  // what meanings of this kind are shown in
+// What meanings of this kind are shown in.
+constexpr const char *task = "pick_and_place", *layout = "continuous";
+std::string environment() { return environment_with_task(task).id(); }
 
 // "ALL", or what is shorter to read: the names, or those that are left out.
 Json names_of(const std::vector<std::string>& names, const std::vector<std::string>& space) {
@@ -100,8 +102,8 @@ std::vector<DrawnCommand> draw_commands(const Lexicon& lexicon, const DrawReques
 Json scenario_of(const DrawnCommand& command, const FeatureSpace& space) {
   Json json{
       {"id", command.id},
-      {"environment", "tabletop"},
-      {"task", "pick_and_place"},
+      {"environment", environment()},
+      {"task", task},
       {"feature_space", space.id},
       {"commands", {{{"utterance", command.utterance}, {"truth", {{"target", meaning_of(command.meaning, space)}}}}}},
       {"train", {{"as_method_asks", false}, {"distractors", {1, 2}}}},
@@ -133,12 +135,13 @@ Json suite_of(const std::string& id, const DrawRequest& request, const std::vect
       "question": "What does an abstraction understand of commands that nobody has seen?",
       "main_arm": "test", "main_demonstrations": 5,
       "arms": {"test": "the target among others, one of which a careless reader of the command would take"}},
-    "environment": "tabletop", "scenarios": [], "groups": {}, "layouts": [], "engines": ["mujoco"],
+    "scenarios": [], "groups": {}, "layouts": [], "engines": ["mujoco"],
     "methods": ["lga+meaning=named", "human", "gcbc_seg"], "references": ["most_shared", "never_demonstrated"],
     "demonstrations": [5], "seeds": [0, 1, 2], "episodes": 30, "scene_seed": 0,
     "options": {"*": {"policy": "heat_map"}},
     "presets": {"smoke": {"methods": ["lga+meaning=named", "human"], "seeds": [0], "episodes": 10, "smoke": true}}})");
   suite["id"] = id;
+  suite["environment"] = environment();
   suite["note"] = fmt::format("Commands drawn from a grammar and a lexicon (seed {}, {} parts of a compound one).",
                               request.seed, request.parts);
   suite["layouts"].push_back(layout);
@@ -153,8 +156,8 @@ Json suite_of(const std::string& id, const DrawRequest& request, const std::vect
 
 Json scenario_of(const std::string& id, const std::vector<Person>& persons, const FeatureSpace& space) {
   Json json{{"id", id},
-            {"environment", "tabletop"},
-            {"task", "pick_and_place"},
+            {"environment", environment()},
+            {"task", task},
             {"feature_space", space.id},
             {"commands", Json::array()},
             {"persons", true},
@@ -175,7 +178,7 @@ Json suite_of_persons(const std::string& id, const std::vector<std::string>& sce
       "question": "What does a person want who does not say it all?",
       "main_arm": "test", "main_demonstrations": 3,
       "arms": {"test": "five objects that the words hold, each of them what another rule means"}},
-    "environment": "tabletop", "layouts": ["continuous"], "engines": ["kinematic"],
+    "layouts": ["continuous"], "engines": ["kinematic"],
     "methods": [
       "person_rule+learns=words", "person_rule+learns=common_looks", "person_rule+learns=common_looks+choice=scene",
       "person_rule", "person_rule+questions=1", "person_rule+questions=2", "person_rule+questions=4",
@@ -193,6 +196,7 @@ Json suite_of_persons(const std::string& id, const std::vector<std::string>& sce
       "smoke": {"methods": ["person_rule+learns=words", "person_rule", "person_rule+questions=1"], "demonstrations": [0, 3],
                 "episodes": 50, "smoke": true}}})");
   suite["id"] = id;
+  suite["environment"] = environment();
   suite["scenarios"] = scenarios;
   suite["presets"]["smoke"]["scenarios"] = {scenarios.front()};
   if (hinted)

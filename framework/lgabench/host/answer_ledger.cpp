@@ -163,8 +163,7 @@ Json AnswerLedger::ask_person(const JsonReader& reader) {
       return std::pair(static_cast<int>(reader.at("scene").integer(-most, most)),
                        takes ? static_cast<std::uint8_t>(reader.at("instance").integer(0, 255)) : 0);
     });
-    if (how == "scene")
-      return {{"type", "scene"}, {"objects", host::to_json(services_.human.scene(command, scene))}};
+    if (how == "scene") return {{"type", "scene"}, {"objects", host::to_json(services_.human.scene(command, scene))}};
     accepts_ += takes ? 1 : price_of_which;
     if (takes)
       return {{"type", "takes"}, {"takes", services_.human.takes(command, scene, static_cast<std::uint8_t>(instance))}};

@@ -92,9 +92,9 @@ Selection HostedMethod::select(const Command& command, const FeatureSpace& space
   AnswerLedger ledger(space, services);
   const auto answer = [&ledger](const Frame& frame, Channel& channel) { return ledger.answer(frame, channel); };
   try {
-    const Frame frame = session_->call(
-        {{"type", "select"}, {"command", host::to_json(command)}, {"space", host::to_json(space)}}, "selection",
-        answer);
+    const Frame frame =
+        session_->call({{"type", "select"}, {"command", host::to_json(command)}, {"space", host::to_json(space)}},
+                       "selection", answer);
     return ledger.account(session_->read([&] {
       const JsonReader reader(frame.header, "selection");
       return host::read_selection(reader.at("selection"));
@@ -132,8 +132,7 @@ std::unique_ptr<Policy> HostedMethod::learn(const std::vector<Demonstration>& de
   AnswerLedger ledger(none, services);
   const auto answer = [&](const Frame& frame, Channel& channel) {
     if (frame.type() != "log") return ledger.answer(frame, channel);
-    for (const auto& [epochs, steps, loss, curves] :
-         host::read_or_malformed([&] { return host::read_log(frame); })) {
+    for (const auto& [epochs, steps, loss, curves] : host::read_or_malformed([&] { return host::read_log(frame); })) {
       for (const auto& [name, value] : curves) services.log.curve(name, value);
       services.log.epoch(epochs, steps, loss);
     }

@@ -37,12 +37,10 @@ class RemoteModel : public LanguageModel {
                            const std::vector<Question>& questions) override {
     Json all = Json::array();
     for (const Question& question : questions) all.push_back(host::to_json(question, command));
-    const Frame frame = ask(channel_,
-                            {{"type", "ask"},
-                             {"command", host::to_json(command)},
-                             {"space", host::to_json(space)},
-                             {"questions", all}},
-                            "answers");
+    const Frame frame =
+        ask(channel_,
+            {{"type", "ask"}, {"command", host::to_json(command)}, {"space", host::to_json(space)}, {"questions", all}},
+            "answers");
     const JsonReader reader(frame.header, "answers");
     note(reader, command);
     std::vector<bool> answers;
@@ -50,23 +48,19 @@ class RemoteModel : public LanguageModel {
     return answers;
   }
   Meaning mean(const Command& command, const FeatureSpace& space) override {
-    const Frame frame = ask(channel_,
-                            {{"type", "ask"},
-                             {"how", "meaning"},
-                             {"command", host::to_json(command)},
-                             {"space", host::to_json(space)}},
-                            "meaning");
+    const Frame frame =
+        ask(channel_,
+            {{"type", "ask"}, {"how", "meaning"}, {"command", host::to_json(command)}, {"space", host::to_json(space)}},
+            "meaning");
     const JsonReader reader(frame.header, "meaning");
     note(reader, command);
     return read_unchecked_meaning(reader.at("meaning"));
   }
   std::vector<Hypothesis> hypotheses(const Command& command, const FeatureSpace& space) override {
-    const Frame frame = ask(channel_,
-                            {{"type", "ask"},
-                             {"how", "hypotheses"},
-                             {"command", host::to_json(command)},
-                             {"space", host::to_json(space)}},
-                            "hypotheses");
+    const Frame frame = ask(
+        channel_,
+        {{"type", "ask"}, {"how", "hypotheses"}, {"command", host::to_json(command)}, {"space", host::to_json(space)}},
+        "hypotheses");
     const JsonReader reader(frame.header, "hypotheses");
     note(reader, command);
     return host::read_hypotheses(reader.at("hypotheses"));
@@ -280,7 +274,7 @@ class Host {
     if (frame.type() == "act") {
       if (!policy_) throw MethodError("asked to act before it learned");
       host::read_observation(memory_, layout_.picture, reader.at("instances"),
-                                 reader.has("shadows") && reader.at("shadows").boolean(), observation_);
+                             reader.has("shadows") && reader.at("shadows").boolean(), observation_);
       const Instruction instruction = host::read_instruction(reader.at("instruction"));
       const Action action = call([&] {
         if (reader.at("reset").boolean()) policy_->reset();
@@ -292,8 +286,7 @@ class Host {
       if (const auto seen = call([&] { return policy_->seen_in_training(); })) reply["seen_in_training"] = *seen;
       return {reply, host::to_bytes(action)};
     }
-    if (frame.type() == "shown")
-      return host::shown_frame(policy_ ? call([&] { return policy_->shown(); }) : Shown());
+    if (frame.type() == "shown") return host::shown_frame(policy_ ? call([&] { return policy_->shown(); }) : Shown());
     if (frame.type() == "drop") {
       const bool drops_method = reader.at("what").string() == "method";
       call([&] { drops_method ? method_.reset() : policy_.reset(); });

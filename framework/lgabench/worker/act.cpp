@@ -6,7 +6,6 @@
 #include <memory>
 
 #include <lgabench/cell/runs_below.hpp>
-#include <lgabench/worker/verbs.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -17,6 +16,7 @@
 #include <lgabench/record/cell.hpp>
 #include <lgabench/record/kept_policy.hpp>
 #include <lgabench/record/layout.hpp>
+#include <lgabench/worker/verbs.hpp>
 
 namespace lgabench::worker {
 namespace {

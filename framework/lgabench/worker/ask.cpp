@@ -7,9 +7,9 @@
 
 #include <lgabench/abstraction/openai_client.hpp>
 #include <lgabench/abstraction/select_features.hpp>
+#include <lgabench/core/scenario.hpp>
 #include <lgabench/worker/job.hpp>
 #include <lgabench/worker/verbs.hpp>
-#include <lgabench/core/scenario.hpp>
 
 namespace lgabench::worker {
 namespace {

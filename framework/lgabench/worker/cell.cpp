@@ -5,9 +5,9 @@
 
 #include <lgabench/abstraction/openai_client.hpp>
 #include <lgabench/cell/run_cell.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/worker/job.hpp>
 #include <lgabench/worker/verbs.hpp>
-#include <lgabench/core/terminal.hpp>
 
 namespace lgabench::worker {
 namespace {

@@ -1,10 +1,10 @@
 // lgabench-worker check-job: uses a plugin as cells do, and looks at what that leaves. `lgabench check-plugin` starts
 // it.
 #include <lgabench/cell/check.hpp>
-#include <lgabench/worker/job.hpp>
-#include <lgabench/worker/verbs.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/job/job.hpp>
+#include <lgabench/worker/job.hpp>
+#include <lgabench/worker/verbs.hpp>
 
 namespace lgabench::worker {
 namespace {

@@ -1,8 +1,9 @@
-// lgabench-worker oracle: what the oracle would do in test scenes, as a request on stdin lists them. `lgabench report --judge pose` starts it.
-#include <lgabench/worker/played_scenes.hpp>
-#include <lgabench/worker/verbs.hpp>
+// lgabench-worker oracle: what the oracle would do in test scenes, as a request on stdin lists them. `lgabench report
+// --judge pose` starts it.
 #include <lgabench/core/error.hpp>
 #include <lgabench/job/job.hpp>
+#include <lgabench/worker/played_scenes.hpp>
+#include <lgabench/worker/verbs.hpp>
 
 namespace lgabench::worker {
 namespace {

@@ -35,7 +35,8 @@ std::string difference(const Recorded& recorded, const fs::path& now) {
   if (!has_status(now)) return title + ": not computed";
   if (const CellStatus status = read_cell_status(now); status.failed)
     return fmt::format("{} fails now: {}", title, status.reason);
-  const bool same = statistics::compare_cells(recorded.directory, now, false).agreement == statistics::Agreement::identical;
+  const bool same =
+      statistics::compare_cells(recorded.directory, now, false).agreement == statistics::Agreement::identical;
   return same ? "" : title + ": not the same when computed again";
 }
 

@@ -26,13 +26,20 @@ std::size_t pixel(const Observation& seen, int column, int row) {
   return static_cast<std::size_t>(row * seen.size.columns + column);
 }
 
-// One object in the middle of the table, and what lies around it.
-Tile close_up(const std::string& type, const std::string& texture, const std::string& caption) {
+// The first environment that has a showcase: whose sheets those are that name none.
+const EnvironmentType& shown_first() {
+  for (const std::string& id : environment_ids())
+    if (const EnvironmentType& environment = find_environment(id); environment.showcase()) return environment;
+  throw InputError("--gallery: no installed environment shows its objects alone");
+}
+
+// One object alone in the middle of a scene, and what lies around it.
+Tile close_up(const EnvironmentType& environment, const std::string& type, const std::string& texture,
+              const std::string& caption) {
   Tile tile{caption, 72, 72, {}};
-  const EnvironmentType& environment = find_environment("tabletop");
   Scene scene;
   scene.task = environment.tasks().front().id;
-  scene.objects = {{type, texture, role::distractor, {.5, 0}, 0, 1}};
+  scene.objects = {{type, texture, role::distractor, environment.showcase()->position_m, 0, 1}};
   const Observation seen = environment.draw(scene);
   const int left = (seen.size.columns - tile.columns) / 2, top = (seen.size.rows - tile.rows) / 2;
   for (int row = 0; row < tile.rows; ++row)
@@ -161,14 +168,15 @@ Sheet scene_sheet(const Scenario& scenario, const std::string& layout) {
 
 Sheet gallery(const std::string& what) {
   std::vector<Tile> tiles;
-  if (what == "objects") {
-    for (const std::string& type : load_feature_space("household").object_types)
-      tiles.push_back(close_up(type, "yellow", type));
-    return sheet(tiles, 7);
-  }
-  if (what == "textures") {
-    for (const std::string& texture : load_feature_space("tabletop").textures)
-      tiles.push_back(close_up("pallet", texture, texture));
+  if (what == "objects" || what == "textures") {
+    const EnvironmentType& environment = shown_first();
+    const Showcase show = *environment.showcase();
+    if (what == "objects")
+      for (const std::string& type : load_feature_space(show.types_of).object_types)
+        tiles.push_back(close_up(environment, type, show.texture, type));
+    else
+      for (const std::string& texture : load_feature_space(show.textures_of).textures)
+        tiles.push_back(close_up(environment, show.type, texture, texture));
     return sheet(tiles, 7);
   }
   if (what == "perturbations") return sheet(perturbed(), 4);
@@ -180,7 +188,7 @@ Sheet gallery(const std::string& what) {
   }
   const std::vector<std::string> environments = environment_ids();
   const bool words = what == "words";
-  const std::string environment = words || what == "scenes" ? "tabletop" : what;
+  const std::string environment = words || what == "scenes" ? shown_first().id() : what;
   if (contains(environments, environment)) {
     for (const std::string& id : scenario_ids()) {
       const Scenario scenario = load_scenario(id);

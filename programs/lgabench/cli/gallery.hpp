@@ -13,10 +13,11 @@ struct Sheet {
   Json cells;          // where the pictures lie: {"names", "tile", "step", "across"}, row by row, in pixels
 };
 
-/// `what`: "objects" (every type), "textures" (every one, on a pallet), "scenes" (a test scene of every scenario, with
-/// its goal mask), "words" or an environment (likewise), "perturbations" (one along every axis at every level, where
-/// that shows), or a file: the objects of a JSON list of {"scenario", "object_type", "texture"}, each alone in its
-/// scenario's environment. Twice the observation's size, or as large. @throws InputError for anything else.
+/// `what`: "objects" (every type), "textures" (every one), both as the environment's showcase says, "scenes" (a test
+/// scene of every scenario, with its goal mask), "words" or an environment (likewise), "perturbations" (one along every
+/// axis at every level, where that shows), or a file: the objects of a JSON list of {"scenario", "object_type",
+/// "texture"}, each alone in its scenario's environment. Twice the observation's size, or as large. @throws InputError
+/// for anything else.
 Sheet gallery(const std::string& what);
 
 /// A scene's beginning: as a policy sees it where its arm has a perturbation, else as it is.

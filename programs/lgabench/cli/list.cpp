@@ -225,7 +225,7 @@ void add_list(CLI::App& app, int& exit) {
   add_python(verb, arguments->python);
   add_scenario_path(verb);
   verb->footer(
-      "Examples\n  lgabench list --short\n  lgabench list suites --short\n  lgabench list layouts --of mobile\n"
+      "Examples\n  lgabench list --short\n  lgabench list suites --short\n  lgabench list layouts --of fetch_fruit\n"
       "  lgabench list --plugin-path my/build");
   verb->callback([arguments, &exit] {
     const Json all = listing(plugins_at(arguments->directories, arguments->python),

@@ -22,14 +22,6 @@ struct NewScenarioArguments : NewScenario {
   fs::path directory = ".";
 };
 
-constexpr const char* environment_id = "tabletop";  // whose scenarios this writes: its flags are that one's
-
-Words tasks() {
-  Words ids;
-  for (const TaskInfo& task : find_environment(environment_id).tasks()) ids.push_back(task.id);
-  return ids;
-}
-
 // The words that a person types for what no flag gave, with commas between them where there may be several.
 void ask(const char* verb, Words& words, const char* flag, const char* question, bool several) {
   if (!words.empty()) return;
@@ -91,7 +83,7 @@ Json range_of(const std::string& text) {
 
 Json scenario_json(const NewScenario& a) {
   Json truth{{"target", meaning_of(a)}};
-  const EnvironmentType& environment = find_environment(environment_id);
+  const EnvironmentType& environment = environment_with_task(a.task);
   const std::optional<SecondRole>& second = find_task(environment, a.task).second;
   if (!a.other_types.empty()) {
     if (!second) throw InputError(fmt::format("--other-types: {} has no other objects than its target", a.task));
@@ -110,7 +102,7 @@ Json scenario_json(const NewScenario& a) {
                      {"near_miss", true}});
   if (!a.unseen.empty()) tests.push_back({{"arm", "unseen"}, {"distractors", distractors}, {"unseen", true}});
   Json json{{"id", a.name},         {"environment", environment.id()},
-            {"task", a.task},       {"feature_space", a.space},
+            {"task", a.task},       {"feature_space", a.space.empty() ? environment.spaces().front() : a.space},
             {"commands", commands}, {"tests", tests}};
   if (a.angle_deg) json["angle_deg"] = *a.angle_deg;
   if (a.clockwise) json["direction"] = "clockwise";
@@ -172,10 +164,11 @@ void add_scenario_options(Verb& verb, NewScenario& a) {
   verb.option("--other-types TYPE,...", a.other_types, "Object types that a sweep must not touch", repeatable);
   verb.option("--other-textures TEXTURE,...", a.other_textures, "Their textures, or ALL", repeatable);
   verb.option("--space SPACE", a.space,
-              "The feature space, whose words you may use (lgabench render --gallery objects draws them)",
-              one_of("space", {"tabletop", "household"}), with_default);
+              "The feature space, whose words you may use; lgabench render --gallery objects draws them (default: the "
+              "usual one of the task's environment)",
+              feature_space());
   verb.below("The task and its scenes");
-  verb.option("--task TASK", a.task, "What to do with the object", one_of("task", tasks()), with_default);
+  verb.option("--task TASK", a.task, "What to do with the object", installed_task(), with_default);
   verb.option("--angle DEGREES", a.angle_deg, "rotate: by how much, in degrees");
   verb.option("--clockwise", a.clockwise, "rotate: clockwise, seen from above");
   verb.option("--distractors N:M", a.distractors, "Number of other objects in a test scene", with_default);
@@ -191,7 +184,7 @@ void add_scenario_options(Verb& verb, NewScenario& a) {
 
 void add_new_scenario(CLI::App& app, int& exit) {
   auto a = std::make_shared<NewScenarioArguments>();
-  Verb verb(app, "new-scenario", "Write a tabletop scenario of your own: a command, its meaning, its scenes");
+  Verb verb(app, "new-scenario", "Write a scenario of your own: a command, its meaning, its scenes");
   verb.option("name NAME", a->name, "The scenario's id, and the name of its file", required);
   verb.option("--directory DIR", a->directory, "The directory for the file", with_default);
   add_scenario_options(verb, *a);

@@ -70,8 +70,9 @@ std::optional<http::Page> page_at(const fs::path& directory, const std::string& 
   if (path == "/") {
     const std::vector<report::Progressed> all = runs_below(directory);
     const bool computing = std::any_of(all.begin(), all.end(), [](const auto& run) { return run.computing; });
-    return http::Page{document::html(report::progress_document(all, one_line(directory.string())), document::no_episodes()),
-                      computing || all.empty() ? renewed_s : 0};
+    return http::Page{
+        document::html(report::progress_document(all, one_line(directory.string())), document::no_episodes()),
+        computing || all.empty() ? renewed_s : 0};
   }
   find_runs(directory, 0, runs);
   for (const fs::path& run : runs)

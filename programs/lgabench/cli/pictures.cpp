@@ -9,12 +9,12 @@
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cell/picture.hpp>
-#include <lgabench/worker/played_scenes.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/base64.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/job/job.hpp>
+#include <lgabench/worker/played_scenes.hpp>
 
 namespace lgabench::cli {
 namespace {

@@ -30,8 +30,8 @@ int exit_of(const statistics::RunResults& results, int otherwise) {
 
 int verdict_of(const statistics::RunResults& results, const std::vector<statistics::Claim>& claims) {
   if (results.record.smoke) to_stderr("Smoke or limited run: not for the leaderboard.\n");
-  const bool reversed =
-      std::any_of(claims.begin(), claims.end(), [](const auto& c) { return c.verdict == statistics::Verdict::reversed; });
+  const bool reversed = std::any_of(claims.begin(), claims.end(),
+                                    [](const auto& c) { return c.verdict == statistics::Verdict::reversed; });
   return exit_of(results, reversed ? regression : ok);
 }
 

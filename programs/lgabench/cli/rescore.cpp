@@ -7,12 +7,12 @@
 #include <optional>
 
 #include <lgabench/cli/commands.hpp>
-#include <lgabench/worker/played_scenes.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/counted_progress.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/statistics/pose.hpp>
+#include <lgabench/worker/played_scenes.hpp>
 
 namespace lgabench::cli {
 namespace {

@@ -31,8 +31,8 @@ namespace lgabench::cli {
 namespace {
 
 struct SelectArguments {
-  std::string command, suite, answers = "recorded", truth = "released", task = "pick_and_place", space = "tabletop",
-                              model, cassette, request, best_product;
+  std::string command, suite, answers = "recorded", truth = "released", task = "pick_and_place", space, model, cassette,
+                              request, best_product;
   long reply_timeout_s = OpenAiOptions().timeout_s;
   int concurrency = 4, max_queries = -1;
   bool json = false, score = false, any_served = false;
@@ -154,6 +154,8 @@ std::vector<Asked> find_commands(const SelectArguments& arguments) {
       for (Asked& asked : commands_of(load_scenario(id, truth))) all.push_back(std::move(asked));
     return all;
   }
+  const std::string space =
+      arguments.space.empty() ? environment_with_task(arguments.task).spaces().front() : arguments.space;
   std::vector<Asked> same_words;
   for (const std::string& id : scenario_ids()) {
     const Scenario scenario = load_scenario(id, truth);
@@ -162,13 +164,13 @@ std::vector<Asked> find_commands(const SelectArguments& arguments) {
       if (asked.command.utterance == arguments.command) same_words.push_back(std::move(asked));
   }
   for (const Asked& asked : same_words)  // two scenarios may say the same in two spaces
-    if (asked.space.id == arguments.space) return {asked};
+    if (asked.space.id == space) return {asked};
   if (!same_words.empty()) return {same_words.front()};
   if (arguments.command.find(' ') == std::string::npos) load_scenario(arguments.command);  // says which there are
   Asked asked{"",
               "",
               Scenario().recorded,
-              load_feature_space(arguments.space),
+              load_feature_space(space),
               {arguments.command, arguments.task, std::nullopt},
               std::nullopt};
   for (const TaskInfo& task : installed_tasks())
@@ -260,11 +262,10 @@ void add_select(CLI::App& app, int&) {
   verb.option("--truth released|printed", arguments->truth,
               "Which true distribution to compare with where released and printed ones differ",
               one_of("truth", {"released", "printed"}), with_default);
-  verb.option(fmt::format("--task {}", fmt::join(installed_task_ids(), "|")), arguments->task,
-              "The task, for a command in quotes", one_of("task", installed_task_ids()), with_default);
-  std::error_code none_to_list;
-  verb.option("--space SPACE", arguments->space, "The feature space, for a command in quotes",
-              one_of("feature space", json_names(data_directory() / "spaces", none_to_list)), with_default);
+  verb.option("--task TASK", arguments->task, "The task, for a command in quotes", installed_task(), with_default);
+  verb.option("--space SPACE", arguments->space,
+              "The feature space, for a command in quotes (default: the usual one of the task's environment)",
+              feature_space());
   add_scenario_path(verb);
   auto* score = verb.option("--score", arguments->score,
                             "With --suite: score, without a policy, how exactly the answers keep the meant objects in "

@@ -2,12 +2,12 @@
 #include <vector>
 
 #include <lgabench/cell/picture.hpp>
-#include <lgabench/worker/played_scenes.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/job/job.hpp>
+#include <lgabench/worker/played_scenes.hpp>
 
 namespace lgabench::cli {
 namespace {

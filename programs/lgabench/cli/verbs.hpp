@@ -15,12 +15,12 @@
 
 #include <lgabench/cli/help.hpp>
 #include <lgabench/core/contains.hpp>
+#include <lgabench/core/exit_status.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/resources.hpp>
 #include <lgabench/core/scenario_files.hpp>
 #include <lgabench/core/suggest.hpp>
-#include <lgabench/core/exit_status.hpp>
 
 namespace lgabench {
 struct Scenario;
@@ -101,6 +101,10 @@ inline CLI::Validator one_of(std::string what, std::vector<std::string> known) {
       },
       "", "");
 }
+
+/// Checks for an option: the word of an installed task; of an installed feature space.
+CLI::Validator installed_task();
+CLI::Validator feature_space();
 
 /// What --plugin-path of a verb takes that finds its plugins with plugins_at() (host/python_method.hpp).
 inline constexpr const char* any_plugin = "a directory, a site-packages folder, a .so file, or FILE.py:CLASS";

@@ -33,7 +33,7 @@ double text_width(const std::string& text, double size) {
   return thousandths * size / 1000;
 }
 
-Path mark_path(const MethodStyle& style, double x, double y, double radius) {
+Path mark_path(const statistics::MethodStyle& style, double x, double y, double radius) {
   if (style.sides == 0) {
     const double r = radius, k = .5523 * radius;  // a circle, to a thousandth, of four curves
     return {{'m', {x + r, y}},
@@ -54,7 +54,7 @@ Path mark_path(const MethodStyle& style, double x, double y, double radius) {
   return path;
 }
 
-Pen mark_pen(const MethodStyle& style) {
+Pen mark_pen(const statistics::MethodStyle& style) {
   return {Ink::series, style.hollow ? Ink::paper : Ink::series, style.hollow ? 1.6 : 1};
 }
 

@@ -45,8 +45,8 @@ class Canvas {
 /// Draws the chart, top left at (0, 0). Returns its height with the legend.
 double draw(const Chart& chart, Canvas& canvas);
 
-Path mark_path(const MethodStyle& style, double x, double y, double radius);
-Pen mark_pen(const MethodStyle& style);
+Path mark_path(const statistics::MethodStyle& style, double x, double y, double radius);
+Pen mark_pen(const statistics::MethodStyle& style);
 
 /// Width of a text in Helvetica; letters beyond ASCII count as an "n".
 double text_width(const std::string& text, double size);

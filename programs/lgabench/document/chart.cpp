@@ -218,7 +218,7 @@ class Drawing {
         canvas_.path(mark_path({}, x, y_of(point.y), 2.2), {Ink::soft, Ink::soft});
       } else {
         canvas_.path({{'m', {x, y_of(point.low)}}, {'l', {x, y_of(point.high)}}}, {Ink::series, Ink::none, 1.3});
-        MethodStyle style = series.style;
+        statistics::MethodStyle style = series.style;
         style.hollow = style.hollow || series.kind == Series::published;
         canvas_.path(mark_path(style, x, y_of(point.y), series.kind == Series::published ? 3 : radius),
                      mark_pen(style));
@@ -246,7 +246,7 @@ class Drawing {
       if (series.joined || series.kind == Series::reference)
         canvas_.path({{'m', {x, y}}, {'l', {x + sample, y}}}, line_pen(series));
       if (series.kind != Series::reference) {
-        MethodStyle style = series.style;
+        statistics::MethodStyle style = series.style;
         style.hollow = style.hollow || series.kind == Series::published;
         canvas_.path(mark_path(style, x + sample / 2, y, radius), mark_pen(style));
       }

@@ -22,7 +22,7 @@ struct ChartPoint {
 struct Series {
   enum Kind { measured, published, reference, curve } kind = measured;
   std::string name;
-  MethodStyle style;
+  statistics::MethodStyle style;
   bool joined = false;  // by a line; else a reference is a short level at each place
   std::vector<ChartPoint> points{};
 };
@@ -52,6 +52,6 @@ std::string svg(const Chart& chart, bool standalone);
 /// which is not embedded; characters outside Latin-1 become "?".
 std::string pdf(const Chart& chart);
 /// The mark of a style alone, as an SVG element 12 wide and high.
-std::string svg_mark(const MethodStyle& style);
+std::string svg_mark(const statistics::MethodStyle& style);
 
 }  // namespace lgabench::document

@@ -64,10 +64,10 @@ struct TableCell {
   std::string text() const;  // of the spans, as they are
 
   Spans spans;
-  std::optional<MethodStyle> style;     // of the method that the cell names: the page shows its mark
-  std::optional<std::size_t> episodes;  // of a row of summary.json: the page shows its episodes on a click
-  std::string outcome;                  // of these episodes: a failure's words; "" for all
-  std::optional<double> rate;           // shown as a bar behind the number
+  std::optional<statistics::MethodStyle> style;  // of the method that the cell names: the page shows its mark
+  std::optional<std::size_t> episodes;           // of a row of summary.json: the page shows its episodes on a click
+  std::string outcome;                           // of these episodes: a failure's words; "" for all
+  std::optional<double> rate;                    // shown as a bar behind the number
   std::vector<BarPart> bar;
   int bar_of = 0;                // the bar's whole width
   std::vector<std::string> log;  // lines, folded

@@ -14,7 +14,7 @@ namespace lgabench::document {
 namespace {
 
 // Text for readers: words in place of ids.
-std::string shown(const std::string& text) { return escaped(readable(text)); }
+std::string shown(const std::string& text) { return escaped(statistics::readable(text)); }
 
 // A span without what is around it for its emphasis.
 std::string words_html(const Span& span) {

@@ -84,7 +84,7 @@ std::string svg(const Chart& chart, bool standalone) {
       standalone ? "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>" : "", canvas.drawn());
 }
 
-std::string svg_mark(const MethodStyle& style) {
+std::string svg_mark(const statistics::MethodStyle& style) {
   Svg canvas;
   canvas.open(Series{Series::measured, "", style});
   canvas.path(mark_path(style, 6, 6, 4), mark_pen(style));

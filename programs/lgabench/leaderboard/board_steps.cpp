@@ -55,7 +55,8 @@ std::optional<BoardSteps> steps_of(const std::vector<Standing>& table, const std
     steps.success[i] = statistics::mean_rate(outcomes, i);
     if (undisputed) steps.undisputed[i] = success(*undisputed, *rows[i]);
   }
-  steps.steps = statistics::steps_of(outcomes, fmt::format("leaderboard/steps/{}/{}", hash(setting), setting.scene_seed));
+  steps.steps =
+      statistics::steps_of(outcomes, fmt::format("leaderboard/steps/{}/{}", hash(setting), setting.scene_seed));
   return steps;
 }
 

@@ -15,7 +15,7 @@ struct BoardSteps {
   MainColumn main;
   std::array<double, 4> success{};                    // of each stage
   std::array<std::optional<double>, 4> undisputed{};  // likewise
-  std::array<statistics::Step, 3> steps;                  // a command of a step is a scenario here
+  std::array<statistics::Step, 3> steps;              // a command of a step is a scenario here
 };
 
 /// Of rows that place what they learned by a heat map, with equal options and shipped answers. None where one of the

@@ -16,7 +16,6 @@ namespace lgabench::leaderboard {
 namespace {
 
 using document::csv_line;
-using statistics::display_name;
 using document::Document;
 using document::Grid;
 using document::Heading;
@@ -26,6 +25,7 @@ using document::Paragraph;
 using document::reading;
 using document::Section;
 using document::Span;
+using statistics::display_name;
 
 // A ranking's rows.
 Grid short_grid(const NamedTable& table) {

@@ -31,9 +31,9 @@ std::optional<Recomputed> played_again(const fs::path& board, const Entry& entry
 std::string new_nonce();
 
 /// A line of verifications.jsonl. Plays the cells that `nonce` chooses, confined and on a cache of their own; by
-/// statistics::verdict_of() it passes unless it differs, and the same bits are owed where owe_same_bits() of the entry's
-/// processor and this one. With `fresh`: fresh_cells(), on a scene seed that the nonce chooses as well; it passes where
-/// none of its fresh_estimates() differs. None where it was interrupted.
+/// statistics::verdict_of() it passes unless it differs, and the same bits are owed where owe_same_bits() of the
+/// entry's processor and this one. With `fresh`: fresh_cells(), on a scene seed that the nonce chooses as well; it
+/// passes where none of its fresh_estimates() differs. None where it was interrupted.
 /// @throws InputError where this installation cannot play the entry: another preset, another version of method or
 /// engine, a method that asks somebody else or has other options, a cell that the host failed. PluginError for a plugin
 /// that is not there.

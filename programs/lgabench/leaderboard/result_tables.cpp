@@ -53,7 +53,7 @@ Grid along_demonstrations(const NamedTable& table, const std::string& arm) {
     std::vector<Rates> rates;
     for (const Standing& s : table.standings) rates.push_back(rates_of(*s.entry, arm, n));
     const statistics::SharedResamples resamples(rates, setting.shared_scenes(),
-                                            fmt::format("leaderboard/results/{}/{}/{}", hash(setting), arm, n));
+                                                fmt::format("leaderboard/results/{}/{}/{}", hash(setting), arm, n));
     grid.heads.emplace_back(std::to_string(n));
     grid.align += 'r';
     for (std::size_t i = 0; i < rates.size(); ++i) {

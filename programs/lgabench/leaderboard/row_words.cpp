@@ -92,9 +92,9 @@ std::string interval_text(const Standing& s) {
 std::string score_text(const Standing& standing) { return score_text(standing.score) + " " + interval_text(standing); }
 
 Span below_random_mark() {
-  const auto mark = std::find_if(statistics::table_marks.begin(), statistics::table_marks.end(), [](const statistics::Mark& one) {
-    return one.word == std::string_view("below_random_object");
-  });
+  const auto mark =
+      std::find_if(statistics::table_marks.begin(), statistics::table_marks.end(),
+                   [](const statistics::Mark& one) { return one.word == std::string_view("below_random_object"); });
   Span span(mark->sign);
   span.title = mark->meaning;
   return span;

@@ -227,7 +227,7 @@ std::vector<Standing> standings(const std::vector<const Entry*>& table, const Tr
   if (all.empty()) return all;
   const Setting& setting = all.front().entry->setting;
   const statistics::SharedResamples resamples(rates, setting.shared_scenes(),
-                                          fmt::format("leaderboard/{}/{}", hash(setting), setting.scene_seed));
+                                              fmt::format("leaderboard/{}/{}", hash(setting), setting.scene_seed));
   for (std::size_t i = 0; i < all.size(); ++i) all[i].interval = resamples.interval(i);
   add_ranks(all, resamples);
   if (track.kind == Track::abstraction) add_gaps(all, track);

@@ -17,7 +17,7 @@ namespace lgabench::leaderboard {
 /// demonstrations and by scenario are of areas under the curves of success against levels, over axes.
 struct Standing {
   const Entry* entry = nullptr;
-  double score = 0;           // over all arms and numbers of demonstrations
+  double score = 0;               // over all arms and numbers of demonstrations
   statistics::Interval interval;  // 95 %
   std::optional<int> rank;    // 1 + the entries that are significantly better, and no less than that of an entry with
                               // more success; none where it is not ranked

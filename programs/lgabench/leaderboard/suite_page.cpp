@@ -20,11 +20,8 @@ namespace {
 
 using document::Chart;
 using document::Charts;
-using statistics::display_name;
 using document::Document;
 using document::Grid;
-using statistics::MethodStyle;
-using statistics::MethodStyles;
 using document::on_page;
 using document::Paragraph;
 using document::reading;
@@ -32,6 +29,9 @@ using document::Section;
 using document::Series;
 using document::Span;
 using document::TableCell;
+using statistics::display_name;
+using statistics::MethodStyle;
+using statistics::MethodStyles;
 
 constexpr std::size_t scenarios_of_a_row = 1000;  // data-row: the standing's number times this, and its scenario's + 1
 constexpr std::size_t curves = 8;                 // more would hide each other

@@ -284,7 +284,7 @@ Brief brief(const Material& material) {
   }
   const std::vector<std::string> lacks = what_it_lacks(material.run);
   brief.notes.insert(brief.notes.end(), lacks.begin(), lacks.end());
-  for (const MethodError& error : method_errors(material.run))
+  for (const statistics::MethodError& error : method_errors(material.run))
     brief.notes.push_back(fmt::format("{} ({})", error.text, (material.run.directory / error.log).string()));
   return brief;
 }

@@ -42,7 +42,8 @@ std::vector<Note> all_notes(const Material& material) {
   for (const std::string& line : notes(material.run, material.summary)) all.push_back({Note::note, line});
   if (material.about.title == material.run.suite)
     all.push_back({Note::source, "The suite has no title: \"about\" of its file gives it, and its arms, one."});
-  for (const MethodError& error : method_errors(material.run)) all.push_back({Note::error, error.text, error.log});
+  for (const statistics::MethodError& error : method_errors(material.run))
+    all.push_back({Note::error, error.text, error.log});
   for (const std::string& line : sources(material.summary, material.styles)) all.push_back({Note::source, line});
   if (const std::string line = pictures_note(material.pictures); !line.empty()) all.push_back({Note::source, line});
   return all;

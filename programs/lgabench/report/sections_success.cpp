@@ -227,8 +227,8 @@ Charts scenario_charts(const Material& material, const Table& table, const std::
   return all;
 }
 
-void add_view(const Material& material, const Table& table, const View& view, const std::string& name, bool first,
-              bool last, Section& section) {
+void add_view(const Material& material, const Table& table, const statistics::View& view, const std::string& name,
+              bool first, bool last, Section& section) {
   const bool arms = table.arms.size() > 1;
   const std::vector<std::string> all = table.scenarios(), each(all.begin(), all.end() - 1);
   const std::string field = fmt::format("{}, {}", material.summary.suite, table.title()),
@@ -243,8 +243,8 @@ void add_view(const Material& material, const Table& table, const View& view, co
   const auto own = [&](TableCell (*cell_of)(const Row*), const std::vector<Column>& shown,
                        const std::vector<std::string>& scenarios,
                        bool plain_names) { return own_grid(material, table, shown, cell_of, scenarios, plain_names); };
-  const std::vector<Column> plain = View::unperturbed(table, view.columns),
-                            shifted = View::unperturbed(table, view.shifted);
+  const std::vector<Column> plain = statistics::View::unperturbed(table, view.columns),
+                            shifted = statistics::View::unperturbed(table, view.shifted);
   if (arms) section.add(reading, Heading{view.corner});
   section.add(
       reading,
@@ -304,8 +304,8 @@ std::vector<Section> success(const Material& material) {
       section.add(reading, std::move(drawn));
     else
       section.add(reading, Paragraph{{"No figure: no cell has finished."}});
-    const std::vector<View> all = views(table);
-    for (const View& view : all) {
+    const std::vector<statistics::View> all = views(table);
+    for (const statistics::View& view : all) {
       const int n = view.columns.front().demonstrations;
       const std::string name = fmt::format("{}_{}{}", slug(table.layout), slug(table.engine),
                                            table.arms.size() > 1 ? fmt::format("_{}", n) : "");

@@ -90,8 +90,8 @@ double p_unsettled(const Said& said) {
 
 double power(int people, int pairs, double share) {
   double chance = 0;
-  for (int yes = people; yes >= 0 && p_unsettled({yes, people - yes, 0}) <= statistics::alpha / pairs && 2 * yes > people;
-       --yes)
+  for (int yes = people;
+       yes >= 0 && p_unsettled({yes, people - yes, 0}) <= statistics::alpha / pairs && 2 * yes > people; --yes)
     chance += std::exp(std::lgamma(people + 1.) - std::lgamma(yes + 1.) - std::lgamma(people - yes + 1.) +
                        yes * std::log(share) + (people - yes) * std::log1p(-share));
   return chance;

@@ -156,7 +156,8 @@ void compare(StudyResults& results) {
                        mean_log(person, 0) - mean_log(person, 1)});
   }
   for (const std::size_t c : {0, 1}) {
-    if (!raw[c].empty()) results.seconds[c] = statistics::spread(raw[c]), results.active_s[c] = statistics::spread(active[c]);
+    if (!raw[c].empty())
+      results.seconds[c] = statistics::spread(raw[c]), results.active_s[c] = statistics::spread(active[c]);
     if (!by_first[c].empty()) results.by_first[c] = statistics::spread(by_first[c]);
   }
   if (differences.size() >= 2) {

@@ -27,14 +27,14 @@ struct CommandResult {
   const Item* item = nullptr;
   std::array<std::vector<double>, 2> seconds;
   std::optional<statistics::Change> change;  // human minus lga_hill: paired, or for a crossover Welch's
-  double p_holm = 1;                     // over the commands
+  double p_holm = 1;                         // over the commands
 };
 
 /// A scale of NASA-TLX in both conditions, of the people who answered it in both.
 struct ScaleResult {
   std::string scale;                          // "raw": the mean of all six
   std::array<std::vector<double>, 2> values;  // by condition, person by person
-  std::optional<statistics::Change> change;       // human minus lga_hill, paired t; none with fewer than two people
+  std::optional<statistics::Change> change;   // human minus lga_hill, paired t; none with fewer than two people
   double p_holm = 1;                          // over the rows
 };
 
@@ -51,8 +51,9 @@ struct PairResult {
 
 struct StudyResults {
   const Record* record = nullptr;
-  std::vector<PersonResult> people;                                // all, by slot
-  std::array<std::optional<statistics::Spread>, 2> seconds, active_s;  // of people's means, by condition; none of nobody
+  std::vector<PersonResult> people;  // all, by slot
+  std::array<std::optional<statistics::Spread>, 2> seconds,
+      active_s;                                       // of people's means, by condition; none of nobody
   std::optional<statistics::Change> primary, active;  // paired t, human minus lga_hill; none with fewer than two people
   /// Crossover: effects on log seconds of condition (human over lga_hill), period (first over second) and set (the
   /// first over the second): each person's difference of periods on three columns. Empty where it has no solution.

@@ -14,8 +14,8 @@
 #include <lgabench/leaderboard/suite_page.hpp>
 
 #include "../../schemas.hpp"
-#include "leaderboard_board.hpp"
 #include "../testing.hpp"
+#include "leaderboard_board.hpp"
 
 namespace lgabench::leaderboard {
 namespace {

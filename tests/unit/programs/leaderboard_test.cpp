@@ -19,8 +19,8 @@
 #include <lgabench/statistics/bootstrap.hpp>
 
 #include "../../schemas.hpp"
-#include "leaderboard_board.hpp"
 #include "../testing.hpp"
+#include "leaderboard_board.hpp"
 
 namespace lgabench::leaderboard {
 namespace {

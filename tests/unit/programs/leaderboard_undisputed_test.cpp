@@ -11,8 +11,8 @@
 #include <lgabench/leaderboard/undisputed.hpp>
 
 #include "../../schemas.hpp"
-#include "leaderboard_board.hpp"
 #include "../testing.hpp"
+#include "leaderboard_board.hpp"
 
 namespace lgabench::leaderboard {
 namespace {

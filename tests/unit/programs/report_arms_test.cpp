@@ -206,7 +206,8 @@ TEST(Paper, BarsBelongToTheirScenarios) {
   EXPECT_EQ(q1.error(statistics::mean_scenario, "LGA", 50), .078);
   EXPECT_EQ(q1.error(statistics::mean_scenario, "GCBC-SEG", 10), .012);
   for (const int n : {10, 20, 30, 40, 50})
-    EXPECT_FALSE(q1.find(statistics::mean_scenario, "GCBC-DART", n)) << "the figure's curve is another row's error bars";
+    EXPECT_FALSE(q1.find(statistics::mean_scenario, "GCBC-DART", n))
+        << "the figure's curve is another row's error bars";
   EXPECT_FALSE(q2.error("q2_heart", "LGA", 50)) << "the figure has none";
 }
 

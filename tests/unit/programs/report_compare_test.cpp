@@ -224,7 +224,8 @@ TEST(Compare, CountsWhatOneRunAloneHas) {
   EXPECT_TRUE(comparison.regressed()) << "a cell of A's is missing";
   EXPECT_SAYS(verdict(comparison), "1 of A's cells is missing in B. ");
   const statistics::RunResults in_a = statistics::read_run(a.save().path), in_b = statistics::read_run(b.save().path);
-  EXPECT_FALSE(statistics::compare_runs(in_a, in_b, statistics::RowPair{"lga", "lga"}).regressed()) << "two rows were chosen";
+  EXPECT_FALSE(statistics::compare_runs(in_a, in_b, statistics::RowPair{"lga", "lga"}).regressed())
+      << "two rows were chosen";
   b.add_failed({"lga", 15, "letter"}, "plugin");
   comparison = compared(a, b);
   EXPECT_EQ(comparison.only_a, 0);
@@ -350,7 +351,8 @@ TEST(CompareCells, OneVerdictOverAllCells) {
   EXPECT_EQ(verdict(4, 0, 100), Reproduction::agrees) << "4 %";
   EXPECT_EQ(verdict(3, 2, 100), Reproduction::differs);
   EXPECT_EQ(verdict(1, 0, 20), Reproduction::differs) << "one of twenty";
-  const std::vector<std::pair<std::string, statistics::CellAgreement>> six(6, cell(Agreement::other_outcomes, 1, 0, 1000));
+  const std::vector<std::pair<std::string, statistics::CellAgreement>> six(6,
+                                                                           cell(Agreement::other_outcomes, 1, 0, 1000));
   EXPECT_EQ(statistics::verdict_of({six.begin(), six.end() - 1}), Reproduction::agrees);
   EXPECT_EQ(statistics::verdict_of(six), Reproduction::differs) << "six cells, all one way";
 }
@@ -363,8 +365,8 @@ TEST(CompareCells, HonestReplaysOfFewCellsAgree) {
   std::vector<std::pair<std::string, statistics::CellAgreement>> cells;
   for (const auto& [recorded, recomputed] : found) {
     const bool turned = recorded + recomputed > 0;
-    cells.emplace_back("lga", statistics::CellAgreement{turned ? Agreement::other_outcomes : Agreement::same_outcomes, "",
-                                                    recorded, recomputed, 100});
+    cells.emplace_back("lga", statistics::CellAgreement{turned ? Agreement::other_outcomes : Agreement::same_outcomes,
+                                                        "", recorded, recomputed, 100});
   }
   int draws = 0, agree = 0, one_percent = 0;
   for (std::size_t a = 0; a < cells.size(); ++a)

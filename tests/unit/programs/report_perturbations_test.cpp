@@ -295,7 +295,8 @@ TEST(SharedResamples, HaveTheRatioOfTwoRows) {
     covered += interval->low <= .6 && .6 <= interval->high;
   }
   EXPECT_GE(covered, 108) << "of 120, 95 % of which are 114";
-  const statistics::SharedResamples none({{{std::vector<double>(20, 0)}}, {{std::vector<double>(20, 0)}}}, true, "none");
+  const statistics::SharedResamples none({{{std::vector<double>(20, 0)}}, {{std::vector<double>(20, 0)}}}, true,
+                                         "none");
   EXPECT_FALSE(none.ratio(0, 1));
 }
 

@@ -252,6 +252,8 @@ class FabricatedRun : public TemporaryDirectory {
 };
 
 /// The table that `lgabench report` prints.
-inline std::string table_text(const fs::path& run) { return document::terminal(report::write_report(run).document, run); }
+inline std::string table_text(const fs::path& run) {
+  return document::terminal(report::write_report(run).document, run);
+}
 
 }  // namespace lgabench

@@ -57,7 +57,8 @@ TEST(CrossoverModel, ThreeColumnsByStatsmodels) {
 }
 
 TEST(WelchT, ReferenceValues) {
-  const statistics::Change c = statistics::welch_t({1.2, 2.4, 1.3, 1.3, 0, 1, 1.8, .8, 4.6, 1.4}, {0.1, -1.2, 0.4, 0.9});
+  const statistics::Change c =
+      statistics::welch_t({1.2, 2.4, 1.3, 1.3, 0, 1, 1.8, .8, 4.6, 1.4}, {0.1, -1.2, 0.4, 0.9});
   EXPECT_NEAR(c.difference, 1.53, 1e-12);
   EXPECT_NEAR(c.interval.low, 0.15406721446535832, 1e-10);
   EXPECT_NEAR(c.interval.high, 2.9059327855346413, 1e-10);
