@@ -5,7 +5,7 @@
 
 #include <lgabench/core/json.hpp>
 
-#include "plugin_fixtures.hpp"
+#include "../plugin_fixtures.hpp"
 
 namespace lgabench {
 namespace {
