@@ -91,8 +91,12 @@ std::vector<DrawnCommand> draw_commands(const Lexicon& lexicon, const DrawReques
     return false;
   };
   while (static_cast<int>(drawn.size()) < request.commands && !open.empty())
-    for (std::size_t i = 0; i < open.size() && static_cast<int>(drawn.size()) < request.commands;)
-      next(open[i]) ? ++i : (open.erase(open.begin() + static_cast<std::ptrdiff_t>(i)), i);
+    for (std::size_t i = 0; i < open.size() && static_cast<int>(drawn.size()) < request.commands;) {
+      if (next(open[i]))
+        ++i;
+      else
+        open.erase(open.begin() + static_cast<std::ptrdiff_t>(i));
+    }
   if (static_cast<int>(drawn.size()) < request.commands)
     throw InputError(
         fmt::format("commands: expected at most {}, all that were found, got {}", drawn.size(), request.commands));
