@@ -33,7 +33,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     canonical(to_json(summary));
     canonical(to_json(summary.suite, claims));
     canonical(to_json(agreements));
-    to_csv(summary);
+    report::to_csv(summary);
     const report::Pictures pictures = all_pictures(results);
     const report::Material material{results, summary, claims, agreements, paper, pictures};
     const document::Document document = report::report_document(material);
@@ -46,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const fs::path directory = run / "cells" / cell.key;
       if (!cell.failed) statistics::compare_cells(directory, directory, true);
     }
-    comparison_text(statistics::compare_runs(results, results));
+    report::comparison_text(statistics::compare_runs(results, results));
   } catch (const InputError&) {
   }
   return 0;

@@ -255,7 +255,7 @@ TEST(Compare, ARowOfOneMethodWithARowOfAnother) {
   EXPECT_EQ(comparison.rows[0].cells, 3);
   EXPECT_EQ(comparison.only_a, 0);  // the other rows are left out, not missed
   EXPECT_EQ(verdict(comparison), "B is better: my_method against LGA (cells, 20 demonstrations, test) +0.50.");
-  EXPECT_EQ(comparison_text(comparison).rfind("B is better: ", 0), 0u) << "the verdict comes first";
+  EXPECT_EQ(report::comparison_text(comparison).rfind("B is better: ", 0), 0u) << "the verdict comes first";
   EXPECT_EQ(to_json(comparison).at("verdict"), verdict(comparison));
 
   const RunComparison within = statistics::compare_runs(in_a, in_a, statistics::RowPair{"lga", "gcbc_dart"});
@@ -275,10 +275,10 @@ TEST(Compare, ItsVerdictIsOneLine) {
   b.add({"gcbc_seg", 3}), a.add({"gcbc_seg", 17});
   EXPECT_EQ(verdict(compared(a, b)),
             "B is worse: GCBC-SEG (cells, 20 demonstrations, test) -0.70. 2 of 3 rows do not differ beyond chance.");
-  const std::string text = comparison_text(compared(a, b));
+  const std::string text = report::comparison_text(compared(a, b));
   EXPECT_SAYS(text, " total ");
   EXPECT_SILENT(text, " learn ");
-  EXPECT_SAYS(comparison_text(compared(a, b), true), " learn ");
+  EXPECT_SAYS(report::comparison_text(compared(a, b), true), " learn ");
 }
 
 TEST(CompareCells, SameBytes) {
