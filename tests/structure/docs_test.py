@@ -351,7 +351,7 @@ class Documents(unittest.TestCase):
             for name in names.split()}
         classes.update({f"consumer.{name}": SOURCE / "tests/consumer/consumer_test.py" for name in ("Package", "NewPlugin", "Examples")})
         native = {".".join(names) for names in re.findall(r"^TEST(?:_F|_P)?\((\w+), (\w+)\)", "".join(
-            file.read_text() for file in sorted((SOURCE / "tests/unit").glob("*.cpp"))), re.M)}
+            file.read_text() for file in sorted((SOURCE / "tests/unit").rglob("*.cpp"))), re.M)}
         for page, at_least in ("trust", 60), ("leaderboard", 35), ("maintaining", 8):
             names, wrong, body = re.findall(self.named, (SOURCE / f"docs/{page}.md").read_text()), [], ""
             self.assertGreater(len(names), at_least)

@@ -262,7 +262,8 @@ void add_select(CLI::App& app, int&) {
   verb.option("--truth released|printed", arguments->truth,
               "Which true distribution to compare with where released and printed ones differ",
               one_of("truth", {"released", "printed"}), with_default);
-  verb.option("--task TASK", arguments->task, "The task, for a command in quotes", installed_task(), with_default);
+  verb.option(fmt::format("--task {}", fmt::join(installed_task_ids(), "|")), arguments->task,
+              "The task, for a command in quotes", installed_task(), with_default);
   verb.option("--space SPACE", arguments->space,
               "The feature space, for a command in quotes (default: the usual one of the task's environment)",
               feature_space());
