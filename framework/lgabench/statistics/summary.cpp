@@ -9,6 +9,7 @@
 
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/parallel.hpp>
+#include <lgabench/record/reference_rows.hpp>
 #include <lgabench/statistics/bootstrap.hpp>
 #include <lgabench/statistics/names.hpp>
 #include <lgabench/statistics/pairs.hpp>
@@ -252,11 +253,11 @@ void mark_low_rows(Table& table) {
   for (Row& row : table.rows) {
     if (row.is_reference() || !row.success) continue;
     std::vector<std::string> marks;
-    for (const auto& [reference, mark] :
-         {std::pair("constant_action", "baseline_not_learned"), {"random_object", "below_random_object"}})
-      if (const Row* low = table.find(row.arm, row.scenario, reference, row.demonstrations);
-          low && low->success && *row.success < *low->success)
-        marks.emplace_back(mark);
+    for (const ReferenceRow& reference : reference_rows()) {
+      const Row* low =
+          reference.below_it ? table.find(row.arm, row.scenario, reference.id, row.demonstrations) : nullptr;
+      if (low && low->success && *row.success < *low->success) marks.emplace_back(reference.below_it->word);
+    }
     row.marks.insert(row.marks.begin(), marks.begin(), marks.end());
   }
 }

@@ -6,6 +6,7 @@
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/leaderboard/suite_page.hpp>
 #include <lgabench/leaderboard/verification.hpp>
+#include <lgabench/record/reference_rows.hpp>
 #include <lgabench/statistics/tables.hpp>
 
 namespace lgabench::leaderboard {
@@ -92,11 +93,9 @@ std::string interval_text(const Standing& s) {
 std::string score_text(const Standing& standing) { return score_text(standing.score) + " " + interval_text(standing); }
 
 Span below_random_mark() {
-  const auto mark =
-      std::find_if(statistics::table_marks.begin(), statistics::table_marks.end(),
-                   [](const statistics::Mark& one) { return one.word == std::string_view("below_random_object"); });
-  Span span(mark->sign);
-  span.title = mark->meaning;
+  const RowMark& mark = *find_reference_row(random_object)->below_it;
+  Span span(mark.sign);
+  span.title = mark.meaning;
   return span;
 }
 

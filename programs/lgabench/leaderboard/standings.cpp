@@ -9,6 +9,7 @@
 
 #include <lgabench/abstraction/quality.hpp>
 #include <lgabench/leaderboard/areas.hpp>
+#include <lgabench/record/reference_rows.hpp>
 #include <lgabench/statistics/bootstrap.hpp>
 
 namespace lgabench::leaderboard {
@@ -237,8 +238,8 @@ std::vector<Standing> standings(const std::vector<const Entry*>& table, const Tr
   int before = 1;
   for (Standing& standing : all)
     if (standing.rank) before = *standing.rank = std::max(*standing.rank, before);
-  const auto random = std::find_if(all.begin(), all.end(),
-                                   [](const Standing& s) { return s.entry->identity.row.id == "random_object"; });
+  const auto random =
+      std::find_if(all.begin(), all.end(), [](const Standing& s) { return s.entry->identity.row.id == random_object; });
   if (random != all.end())
     for (Standing& standing : all) standing.below_random = !is_reference(standing) && standing.score < random->score;
   return all;

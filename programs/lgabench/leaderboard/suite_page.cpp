@@ -263,11 +263,6 @@ Grid heat_grid(const NamedTable& table, std::size_t first_row) {
 
 }  // namespace
 
-std::string capital(std::string text) {
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text;
-}
-
 Grid grid_of(const NamedTable& table, const std::string& what, std::string caption) {
   Grid grid;
   grid.name = table.setting.name() + what;

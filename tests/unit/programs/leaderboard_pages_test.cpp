@@ -315,8 +315,8 @@ TEST(Board, ARowBelowTheRandomObjectSaysSo) {
   EXPECT_SAYS(page, "]§ |");
   EXPECT_SAYS(page, "§ below the random visible object, which needs no demonstration.");
   EXPECT_SAYS(suite, "<span title=\"below the random visible object, which needs no demonstration\">§</span>");
-  EXPECT_LT(suite.find("method of m1<"), suite.find("random visible object<"));
-  EXPECT_LT(suite.find("random visible object<"), suite.find("method of m0<"));
+  EXPECT_LT(suite.find("method of m1<"), suite.find("Random visible object<"));
+  EXPECT_LT(suite.find("Random visible object<"), suite.find("method of m0<"));
 }
 
 // q1 with a policy on the paper's network and one beside it.
