@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <set>
 
 #include <lgabench/document/writers.hpp>
@@ -181,10 +180,9 @@ bool ranks_entries(const NamedTable& table) {
   return std::any_of(table.standings.begin(), table.standings.end(), [](const Standing& s) { return s.rank; });
 }
 
-// In the order in which a reader needs them, then by name; suites for diagnosis, without a rank, come last.
-Suites suites_of(const std::vector<Entry>& entries, const Labels& labels, const Tracks& tracks, const Told& told) {
-  constexpr std::array order{"q1",     "clutter", "q2",    "q3",        "few_members", "many_commands",
-                             "mobile", "fetch",   "drawn", "robustness"};
+// In the order of tracks.json, then by name; suites for diagnosis, without a rank, come last.
+Suites suites_of(const std::vector<Entry>& entries, const Labels& labels, const Tracks& tracks,
+                 const std::vector<std::string>& order, const Told& told) {
   std::map<std::pair<std::ptrdiff_t, std::string>, std::vector<NamedTable>> by_place;
   const auto all = tables(entries);
   std::size_t done = 0;
@@ -216,7 +214,7 @@ std::map<fs::path, std::string> made_files(const fs::path& board, const std::vec
   const Labels labels = read_labels(board);
   std::map<fs::path, Marked> marked;
   for (const fs::path& document : documents_in(documents)) marked[document] = read_marked(document);
-  const Suites suites = suites_of(entries, labels, tracks, told);
+  const Suites suites = suites_of(entries, labels, tracks, read_order(board), told);
   std::map<fs::path, std::string> files;
   files[board / "README.md"] = markdown(readme(suites));
   files[board / "index.html"] = html(overview(suites), overview_data(suites), "leaderboard.js");

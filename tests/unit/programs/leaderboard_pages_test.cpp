@@ -291,13 +291,14 @@ TEST(Board, StepsAreOfRowsWithEqualOptionsAndAddUp) {
   EXPECT_NEAR(steps("gpt4_released")->success[2], .3, .1);
 }
 
-TEST(Board, SuitesComeInThePapersOrderAndThoseWithoutARankLast) {
+TEST(Board, SuitesComeInTheOrderOfTracksAndThoseWithoutARankLast) {
   const TemporaryDirectory board;
   for (const char* suite : {"z_ranked", "a_diagnosis", "mobile", "q1"}) {
     Setting setting = small_setting();
     setting.suite = suite;
     write_replayed(board.path, made_entry(setting, "a", .5, *suite == 'a' ? "reference" : "method"));
   }
+  write_file(board.path / tracks_file, R"({"suites": ["q1", "mobile"]})");
   build(board.path);
   const std::string page = read_file(board.path / "README.md");
   EXPECT_LT(page.find("(q1.html)"), page.find("(mobile.html)"));
