@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include <lgabench/leaderboard/standings.hpp>
+#include <lgabench/leaderboard/admission.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/record/reference_rows.hpp>
 #include <lgabench/statistics/names.hpp>
@@ -64,9 +64,7 @@ std::string label_of(const Labels& labels, const Entry& entry, const std::vector
     const std::string words = words_for(labels, option + "=" + option_text(row.options.at(option)));
     text += (words.empty() ? "" : ", ") + words;
   }
-  const Reading& reading = entry.identity.reading;
-  for (const auto& [option, source] : {std::pair("names=", reading.names), {"segments=", reading.segments}})
-    if (source != Reading::simulator) text += ", " + words_for(labels, option + source);
+  for (const std::string& part : entry.identity.conditions.parts()) text += ", " + words_for(labels, part);
   return text;
 }
 
