@@ -190,7 +190,7 @@ class Pages(unittest.TestCase):
     def test_the_patch_of_a_statistic_applies(self):
         self.assertIn("git apply examples/statistic/seed_range.patch", self.extending)
         patch = (SOURCE / "examples/statistic/seed_range.patch").read_text()
-        self.assertGreater(patch.count("\n+++ "), 5)
+        self.assertEqual(patch.count("\n+++ "), 6, "a column: one file; a number: four, and a test")
         tried = subprocess.run(["git", "apply", "--check", "-"], cwd=SOURCE, input=patch, capture_output=True, text=True)
         self.assertEqual(tried.stderr, "")
 

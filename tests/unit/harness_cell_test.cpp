@@ -15,6 +15,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <lgabench/record/reference_rows.hpp>
 #include <tabletop/two_poses.hpp>
 
 #include "../engine_under_test.hpp"
@@ -257,6 +258,11 @@ TEST_F(Play, ReferenceRows) {
   for (const Episode& e : random) kinds.insert(e.failure);
   EXPECT_EQ(kinds, (std::set<Failure>{failure::none, "wrong_object"})) << "it always takes something";
   EXPECT_THROW(reference_actor("nothing"), InputError);
+}
+
+TEST(ReferenceRows, EachActsAsAMethodOrByARule) {
+  for (const ReferenceRow& row : reference_rows())
+    EXPECT_NE(reference_method(row.id) != nullptr, static_cast<bool>(reference_actor(row.id))) << row.id;
 }
 
 TEST_F(Play, ReferenceRowsThatHearNoCommandFindTheTargetWhereTheSceneGivesItAway) {

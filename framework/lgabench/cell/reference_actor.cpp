@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include <lgabench/cell/constant_action.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/stations.hpp>
@@ -16,8 +17,6 @@
 
 namespace lgabench {
 namespace {
-
-Action oracle(const Environment& environment, const Scene&, const Observation&) { return environment.expert_action(); }
 
 using Instances = std::vector<Instance>;
 
@@ -37,17 +36,25 @@ Instance drawn(const Instances& some, const std::string& row, const Scene& scene
   return some[stream.below(static_cast<std::uint32_t>(some.size()))];
 }
 
-// Handles it as the oracle would.
-Action any_of(const Instances& some, const char* row, const Environment& environment, const Scene& scene) {
-  return environment.expert_action_for(drawn(some, row, scene).id);
+Actor oracle(const std::string&, const DemonstratedScenes&) {
+  return [](const Environment& environment, const Scene&, const Observation&) {
+    return Move(environment.expert_action());
+  };
 }
 
-Action random_object(const Environment& environment, const Scene& scene, const Observation& observation) {
-  return any_of(visible(scene, observation), "random_object", environment, scene);
+// Takes one of those that `rule` leaves of the visible objects, and handles it as the oracle would.
+template <typename Rule>
+Actor any_of(const std::string& row, const Rule& rule) {
+  return [row, rule](const Environment& environment, const Scene& scene, const Observation& observation) {
+    return Move(environment.expert_action_for(drawn(rule(visible(scene, observation)), row, scene).id));
+  };
 }
 
-Action most_shared(const Environment& environment, const Scene& scene, const Observation& observation) {
-  const Instances all = visible(scene, observation);
+Actor any_object(const std::string& row, const DemonstratedScenes&) {
+  return any_of(row, [](const Instances& all) { return all; });
+}
+
+Instances sharing_most(const Instances& all) {
   int most = 0;
   Instances some;
   for (const Instance& one : all) {
@@ -57,24 +64,25 @@ Action most_shared(const Environment& environment, const Scene& scene, const Obs
     if (shared >= most) some.push_back(one);
     most = std::max(most, shared);
   }
-  return any_of(some, "most_shared", environment, scene);
+  return some;
 }
+
+Actor most_shared(const std::string& row, const DemonstratedScenes&) { return any_of(row, sharing_most); }
 
 using Pairs = std::set<std::pair<std::string, std::string>>;  // of types and textures
 
-Actor never_demonstrated(const DemonstratedScenes& demonstrated) {
+Actor never_demonstrated(const std::string& row, const DemonstratedScenes& demonstrated) {
   Pairs shown;
   for (const Scene& scene : demonstrated.scenes)
     for (const SceneObject& o : scene.objects)
       if (o.role == role::target) shown.emplace(o.object_type, o.texture);
-  return [shown](const Environment& environment, const Scene& scene, const Observation& observation) {
-    const Instances all = visible(scene, observation);
+  return any_of(row, [shown](const Instances& all) {
     Instances some;
     std::copy_if(all.begin(), all.end(), std::back_inserter(some), [&shown](const Instance& one) {
       return shown.count({one.object_type, one.texture}) == 0;
     });
-    return Move(any_of(some.empty() ? all : some, "never_demonstrated", environment, scene));
-  };
+    return some.empty() ? all : some;
+  });
 }
 
 // How often demonstrations took, or led to, objects of a type and of a texture.
@@ -137,18 +145,50 @@ Actor by_demonstrations(const std::string& row, Extreme which, const Demonstrate
   };
 }
 
+Actor most_demonstrated(const std::string& row, const DemonstratedScenes& shown) {
+  return by_demonstrations(row, Extreme::most, shown);
+}
+
+Actor least_demonstrated(const std::string& row, const DemonstratedScenes& shown) {
+  return by_demonstrations(row, Extreme::least, shown);
+}
+
+std::unique_ptr<Method> constant_action() { return std::make_unique<ConstantAction>(); }
+
+// How a reference row acts: as a method that learns from demonstrations, or by a rule.
+struct Acting {
+  const char* row;
+  std::unique_ptr<Method> (*method)();
+  Actor (*rule)(const std::string& row, const DemonstratedScenes& shown);
+};
+constexpr Acting all_acting[] = {
+    {"constant_action", constant_action, nullptr},
+    {random_object, nullptr, any_object},
+    {"oracle", nullptr, oracle},
+    {"most_demonstrated", nullptr, most_demonstrated},
+    {"least_demonstrated", nullptr, least_demonstrated},
+    {"most_shared", nullptr, most_shared},
+    {"never_demonstrated", nullptr, never_demonstrated},
+};
+
+const Acting& acting(const std::string& row) {
+  for (const Acting& one : all_acting)
+    if (row == one.row) return one;
+  std::vector<std::string> known;
+  for (const Acting& one : all_acting) known.emplace_back(one.row);
+  throw InputError(fmt::format("reference row \"{}\": expected {}", row, fmt::join(known, ", ")));
+}
+
 }  // namespace
 
+std::unique_ptr<Method> reference_method(const std::string& id) {
+  const Acting& row = acting(id);
+  return row.method ? row.method() : nullptr;
+}
+
 Actor reference_actor(const std::string& id, const DemonstratedScenes& shown) {
-  if (id == "oracle") return oracle;
-  if (id == "random_object") return random_object;
-  if (id == "most_shared") return most_shared;
-  if (id == "never_demonstrated") return never_demonstrated(shown);
-  if (id == "most_demonstrated") return by_demonstrations(id, Extreme::most, shown);
-  if (id == "least_demonstrated") return by_demonstrations(id, Extreme::least, shown);
-  std::vector<std::string> known;
-  for (const ReferenceRow& row : reference_rows()) known.push_back(row.id);
-  throw InputError(fmt::format("reference row \"{}\": expected {}", id, fmt::join(known, ", ")));
+  const Acting& row = acting(id);
+  return row.rule ? row.rule(id, shown) : Actor();
 }
 
 }  // namespace lgabench

@@ -1,5 +1,6 @@
 // What the reference rows do in a scene, which no plugin is asked for.
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,13 +15,16 @@ struct DemonstratedScenes {
   ActionSpace actions{};  // of the scenario
 };
 
-/// "oracle", or the oracle's rule for one visible object, the goal excepted: "random_object", any; "most_shared", one
-/// of those that share types and textures with most others; "never_demonstrated", one whose type and texture together
-/// were no target's in `shown`, any where there is none; "most_demonstrated", the highest score (times its type was
-/// taken
-/// + 1/2) x (times its texture was + 1/2) in the command's demonstrations, in all where it has none;
+/// The method that the row is, "constant_action"; null of a row that acts by a rule. @throws InputError for another id.
+std::unique_ptr<Method> reference_method(const std::string& id);
+
+/// The rule of the row: "oracle", or the oracle's rule for one visible object, the goal excepted: "random_object", any;
+/// "most_shared", one of those that share types and textures with most others; "never_demonstrated", one whose type and
+/// texture together were no target's in `shown`, any where there is none; "most_demonstrated", the highest score (times
+/// its type was taken + 1/2) x (times its texture was + 1/2) in the command's demonstrations, in all where it has none;
 /// "least_demonstrated", the lowest in all. Where actions have stations, the last two lead to the object that scores so
-/// among those of the second set. Drawn from a stream of row and scene. @throws InputError for another id.
+/// among those of the second set. Drawn from a stream of row and scene. None of a row that is a method.
+/// @throws InputError for another id.
 Actor reference_actor(const std::string& id, const DemonstratedScenes& shown = {});
 
 }  // namespace lgabench

@@ -9,7 +9,6 @@
 
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/answers.hpp>
-#include <lgabench/cell/constant_action.hpp>
 #include <lgabench/cell/demonstrations.hpp>
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cell/hosted_axes.hpp>
@@ -83,16 +82,13 @@ struct CellMethod {
   MethodInProcesses* processes = nullptr;  // the same object; null: no plugin's
 };
 
-// The plugin's, or two of which one selects; the constant action, or none.
+// The plugin's, or two of which one selects; a reference row's, or none.
 CellMethod make_method(const CellJob& job) {
   const auto in_directory = [&job](const PluginInfo& plugin, const Json& options, const char* name) {
     fs::create_directory(job.scratch / name);
     return hosted(job, plugin, options, job.scratch / name);
   };
-  if (!job.method) {
-    if (job.cell.method.id == "constant_action") return {std::make_unique<ConstantAction>()};
-    return {};
-  }
+  if (!job.method) return {reference_method(job.cell.method.id)};
   const Json& options = job.cell.method.options;
   std::unique_ptr<MethodInProcesses> method;
   if (job.acts)

@@ -3,18 +3,62 @@
 #include <algorithm>
 
 namespace lgabench {
+namespace {
+
+// Words for the members of a row that are true or false.
+constexpr bool learns = true, in_every_suite = true, is_bound = true;
+
+}  // namespace
 
 const std::vector<ReferenceRow>& reference_rows() {
   static const std::vector<ReferenceRow> all{
-      {"constant_action", true, true,
-       "The best constant action: the same in every scene, from the training actions alone"},
-      {"random_object", false, true, "A visible object, drawn at random and handled as the expert would"},
-      {"oracle", false, true, "The expert, who knows the target: what success there can be"},
-      {"most_demonstrated", true, true,
-       "The visible object whose type and texture the command's demonstrations took most often"},
-      {"least_demonstrated", true, false, "The visible object that is least like anything demonstrations took"},
-      {"most_shared", false, false, "The visible object that shares types and textures with most others"},
-      {"never_demonstrated", true, false, "A visible object that is like no demonstrated target"}};
+      {"constant_action",
+       "best constant action",
+       "The best constant action: the same in every scene, from the training actions alone",
+       learns,
+       in_every_suite,
+       {2, 3},
+       RowMark{"baseline_not_learned", "†",
+               "below the best constant action with as many demonstrations: nothing was learned"}},
+      {random_object,
+       "random visible object",
+       "A visible object, drawn at random and handled as the expert would",
+       !learns,
+       in_every_suite,
+       {8, 3, 2, 3},
+       RowMark{"below_random_object", "§", "below the random visible object, which needs no demonstration"}},
+      {"oracle",
+       "oracle",
+       "The expert, who knows the target: what success there can be",
+       !learns,
+       in_every_suite,
+       {},
+       {},
+       is_bound},
+      {"most_demonstrated",
+       "most demonstrated",
+       "The visible object whose type and texture the command's demonstrations took most often",
+       learns,
+       in_every_suite,
+       {4, 2}},
+      {"least_demonstrated",
+       "least demonstrated",
+       "The visible object that is least like anything demonstrations took",
+       learns,
+       !in_every_suite,
+       {1, 4}},
+      {"most_shared",
+       "most shared features",
+       "The visible object that shares types and textures with most others",
+       !learns,
+       !in_every_suite,
+       {1, 2}},
+      {"never_demonstrated",
+       "never demonstrated",
+       "A visible object that is like no demonstrated target",
+       learns,
+       !in_every_suite,
+       {6, 2}}};
   return all;
 }
 

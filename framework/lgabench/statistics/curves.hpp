@@ -74,11 +74,8 @@ struct PerturbationCurve {
 /// row without errors. In the order of the tables' rows.
 std::vector<ErrorCurve> error_curves(const RunResults& run, const std::vector<Table>& tables);
 
-/// Reference rows that have a curve: what could be done at a level.
-inline constexpr std::array bound_rows{"oracle", "bound"};
-
-/// Curves of the mean rows of all tables, of methods and of bound_rows: by table, method, demonstrations, then axes as
-/// the arms have them.
+/// Curves of the mean rows of all tables, of methods and of reference rows that are a bound: by table, method,
+/// demonstrations, then axes as the arms have them.
 std::vector<PerturbationCurve> perturbation_curves(const RunResults& run, const std::vector<Table>& tables);
 
 /// The weights of success in an area, in the control and then at each of these levels: the trapezoids' sides, as shares

@@ -10,6 +10,7 @@
 
 #include <lgabench/core/json.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <lgabench/record/reference_rows.hpp>
 
 namespace lgabench::statistics {
 namespace {
@@ -44,7 +45,7 @@ const JsonReader& methods_file() {
   return reader;
 }
 
-// Those of methods.json, by id.
+// The methods of methods.json and the reference rows, by id.
 const std::map<std::string, Known>& known() {
   static const std::map<std::string, Known> all = [] {
     const JsonReader& reader = methods_file();
@@ -58,12 +59,9 @@ const std::map<std::string, Known>& known() {
                                          static_cast<std::size_t>(mark - marks.begin())};
     }
     ++rank;  // that of methods which are not there
-    for (const JsonReader& reference : reader.at("references").elements()) {
-      Known& own = found[reference.at("id").string()];
-      own.name = reference.at("name").string();
-      own.rank = rank++;
-      for (const JsonReader& dash : reference.at("dashes").elements()) own.dashes.push_back(dash.number());
-    }
+    for (const bool bounds : {false, true})
+      for (const ReferenceRow& row : reference_rows())
+        if (row.is_bound == bounds) found[row.id] = {row.name, "", rank++, 0, row.dashes};
     return found;
   }();
   return all;
@@ -86,7 +84,7 @@ std::string id_in_words(const std::string& text) {
   return words;
 }
 
-// nullptr for an id that methods.json does not have.
+// nullptr for an id that is not known().
 const Known* find(const std::string& method) {
   const auto it = known().find(row_id(method));
   return it == known().end() ? nullptr : &it->second;

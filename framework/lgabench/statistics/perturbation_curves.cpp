@@ -11,6 +11,7 @@
 #include <lgabench/core/parallel.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/record/reference_rows.hpp>
 #include <lgabench/statistics/bootstrap.hpp>
 #include <lgabench/statistics/names.hpp>
 #include <lgabench/statistics/pairs.hpp>
@@ -33,8 +34,9 @@ std::optional<PerturbationAxis> axis_of(const RunResults& run, const std::string
 }
 
 bool has_curve(const Row& row) {
-  return row.is_mean() && row.perturbation && row.success && row.shift &&
-         (!row.is_reference() || contains(bound_rows, row.method));
+  if (!row.is_mean() || !row.perturbation || !row.success || !row.shift) return false;
+  const ReferenceRow* reference = row.is_reference() ? find_reference_row(row.method) : nullptr;
+  return !row.is_reference() || (reference && reference->is_bound);
 }
 
 bool is_cell_of(const CellResult& cell, const PerturbationCurve& curve) {

@@ -9,6 +9,7 @@
 
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/parallel.hpp>
+#include <lgabench/record/reference_rows.hpp>
 #include <lgabench/statistics/bootstrap.hpp>
 #include <lgabench/statistics/names.hpp>
 #include <lgabench/statistics/pairs.hpp>
@@ -33,68 +34,6 @@ struct Draft {
   std::vector<std::vector<SeedResult>> scenarios;
   std::set<std::string> participants;
 };
-
-std::optional<double> mean_cost(const std::vector<Json>& selections, const char* member) {
-  std::vector<std::optional<double>> all;
-  for (const Json& one : selections) all.emplace_back(one.at("cost").at(member).get<double>());
-  return mean_of(all);
-}
-
-// The different texts of that member, joined.
-std::string words_of(const std::vector<Json>& selections, const char* member) {
-  std::set<std::string> words;
-  for (const Json& one : selections) words.insert(one.at(member).get<std::string>());
-  return fmt::format("{}", fmt::join(words, "; "));
-}
-
-// Who selected: "gpt-4, edited by 3 participants". People are counted, not listed.
-std::string source_of(const std::vector<Json>& selections) {
-  std::map<std::string, std::set<std::string>> people;  // by what stands before "participant ID"
-  for (const Json& one : selections)
-    if (one.value("provenance", "") == "human") {
-      const std::string source = one.value("source", "");
-      people[source.substr(0, source.rfind("participant "))].insert(source);
-    }
-  if (people.empty()) return words_of(selections, "source");
-  std::vector<std::string> words;
-  for (const auto& [before, sources] : people)
-    words.push_back(sources.size() == 1 ? *sources.begin() : fmt::format("{}{} participants", before, sources.size()));
-  return fmt::format("{}", fmt::join(words, "; "));
-}
-
-// A row's Selections for one command; none if none of its cells selects.
-std::optional<PhiOfCommand> phi_of(const std::vector<const CellResult*>& cells, std::size_t command) {
-  std::vector<Json> selections;
-  std::vector<Quality> qualities;
-  for (const CellResult* cell : cells)
-    if (!cell->failed && !cell->commands[command].quality.empty()) {
-      selections.push_back(cell->commands[command].selection);
-      qualities.push_back(cell->commands[command].quality);
-    }
-  if (selections.empty()) return {};
-  const CommandResult& first = cells.front()->commands[command];
-  return PhiOfCommand{first.utterance,
-                      first.seen,
-                      words_of(selections, "provenance"),
-                      source_of(selections),
-                      words_of(selections, "asked_as"),
-                      mean_cost(selections, "lm_queries"),
-                      mean_cost(selections, "human_seconds"),
-                      mean_quality(qualities),
-                      !cells.front()->configuration.selection_errors.none()};
-}
-
-// The same for every command that the arm gives.
-std::vector<PhiOfCommand> phi_of(const std::vector<const CellResult*>& cells, const std::string& arm) {
-  std::set<std::size_t> given;
-  for (const CellResult* cell : cells)
-    if (!cell->failed)
-      for (const Episode& e : cell->episodes.at(arm)) given.insert(e.command);
-  std::vector<PhiOfCommand> all;
-  for (const std::size_t command : given)
-    if (auto phi = phi_of(cells, command)) all.push_back(std::move(*phi));
-  return all;
-}
 
 // What a Selection keeps.
 Json kept(Json selection) {
@@ -246,17 +185,54 @@ Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios, con
   return row;
 }
 
+Json shift_json(const std::optional<Shift>& shift) {
+  if (!shift) return nullptr;
+  Json json{{"against", shift->against},
+            {"difference", shift->difference},
+            {"low", shift->interval.low},
+            {"high", shift->interval.high},
+            {"same_actions", shift->same_actions}};
+  if (shift->selected_otherwise) json["selected_otherwise"] = *shift->selected_otherwise;
+  return json;
+}
+
+// The row as summary.json has it.
+Json row_json(const Row& row) {
+  return {{"scenario", row.scenario},
+          {"layout", row.layout},
+          {"engine", row.engine},
+          {"method", row.method},
+          {"method_kind", row.kind},
+          {"demonstrations", row.demonstrations},
+          {"arm", row.arm},
+          {"seeds", row.seeds},
+          {"participants", row.participants},
+          {"scenes", row.scenes},
+          {"episodes", row.episodes},
+          {"successes", row.successes},
+          {"success", row.success ? Json(*row.success) : Json()},
+          {"low", row.success ? Json(row.interval.low) : Json()},
+          {"high", row.success ? Json(row.interval.high) : Json()},
+          {"shift", shift_json(row.shift)},
+          {"failures", row.failures},
+          {"attribution", row.attribution},
+          {"inputs_seen", row.seen_share() ? Json(*row.seen_share()) : Json()},
+          {"n_error", row.n_error},
+          {"marks", row.marks},
+          {"phi", to_json(row.phi)}};
+}
+
 // What is below a reference row: a method that learned less than what always does the same thing has learned nothing,
 // and one that grips any object it sees needs no demonstration.
 void mark_low_rows(Table& table) {
   for (Row& row : table.rows) {
     if (row.is_reference() || !row.success) continue;
     std::vector<std::string> marks;
-    for (const auto& [reference, mark] :
-         {std::pair("constant_action", "baseline_not_learned"), {"random_object", "below_random_object"}})
-      if (const Row* low = table.find(row.arm, row.scenario, reference, row.demonstrations);
-          low && low->success && *row.success < *low->success)
-        marks.emplace_back(mark);
+    for (const ReferenceRow& reference : reference_rows()) {
+      const Row* low =
+          reference.below_it ? table.find(row.arm, row.scenario, reference.id, row.demonstrations) : nullptr;
+      if (low && low->success && *row.success < *low->success) marks.emplace_back(reference.below_it->word);
+    }
     row.marks.insert(row.marks.begin(), marks.begin(), marks.end());
   }
 }
@@ -363,6 +339,28 @@ Summary summarize(const RunResults& run) {
   summary.steps = all_steps(run, summary.tables, about);
   summary.regrets = regrets(run);
   return summary;
+}
+
+Json to_json(const Summary& summary) {
+  Json rows = Json::array(), failed = Json::array();
+  for (const Table& table : summary.tables)
+    for (const Row& row : table.rows) rows.push_back(row_json(row));
+  for (const CellResult& cell : summary.failed)
+    failed.push_back({{"cell", cell.key}, {"fault", cell.fault}, {"reason", cell.reason}});
+  Json nearness = Json::array();
+  for (const Table& table : summary.tables)
+    if (const auto& near = table.nearness)
+      nearness.push_back({{"layout", table.layout},
+                          {"engine", table.engine},
+                          {"points", near->points},
+                          {"near", near->near},
+                          {"mean_distance", near->mean_distance}});
+  Json json{{"suite", summary.suite}, {"rows", rows}, {"failed_cells", failed}, {"near_paper", nearness}};
+  for (const ErrorCurve& curve : summary.error_curves) json["error_curves"].push_back(to_json(curve));
+  for (const PerturbationCurve& curve : summary.perturbations) json["perturbations"].push_back(to_json(curve));
+  for (const Steps& steps : summary.steps) json["steps"].push_back(to_json(steps));
+  for (const Regret& regret : summary.regrets) json["regret"].push_back(to_json(regret));
+  return json;
 }
 
 }  // namespace lgabench::statistics

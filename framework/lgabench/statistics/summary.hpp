@@ -43,6 +43,10 @@ struct PhiOfCommand {
   bool erring = false;  // errors were made in it on purpose
 };
 Json to_json(const PhiOfCommand& phi);
+/// null where nothing was selected.
+Json to_json(const std::vector<PhiOfCommand>& phi);
+/// Of every command that the arm gives, those for which a cell selected. @pre `cells` differ in seed or participant
+std::vector<PhiOfCommand> phi_of(const std::vector<const CellResult*>& cells, const std::string& arm);
 
 /// What a method did in one arm at one number of demonstrations, in one scenario or on the mean over all of them.
 struct Row {

@@ -80,9 +80,25 @@ std::optional<Column> main_column(const Table& table, const AboutSuite& about) {
   return column;
 }
 
+const std::vector<RowMark>& table_marks() {
+  static const std::vector<RowMark> all = [] {
+    std::vector<RowMark> marks;
+    for (const ReferenceRow& row : reference_rows())
+      if (row.below_it) marks.push_back(*row.below_it);
+    marks.insert(
+        marks.end(),
+        {{"incomplete", "‡", "incomplete: a cell failed, or the mean lacks a scenario"},
+         {"method_error", "!", "the method's own code failed in some of the episodes, which count as failures"},
+         {"ambiguous", "?", "ambiguous words, by which a person might mean something else: shown, in no mean"},
+         {"network", "¶", "reached the network on its own: in no leaderboard"}});
+    return marks;
+  }();
+  return all;
+}
+
 std::string marks_text(const Row& row) {
   std::string text;
-  for (const Mark& mark : table_marks)
+  for (const RowMark& mark : table_marks())
     if (row.marked(mark.word)) text += mark.sign;
   return text;
 }
@@ -192,7 +208,7 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   if (run.record.smoke) lines.emplace_back("Smoke or limited run: not for the leaderboard.");
   const std::vector<std::string> lacks = what_it_lacks(run);
   lines.insert(lines.end(), lacks.begin(), lacks.end());
-  for (const Mark& mark : table_marks)
+  for (const RowMark& mark : table_marks())
     if (marked.count(mark.word) != 0) lines.push_back(fmt::format("{} {}.", mark.sign, mark.meaning));
   for (const std::string& arm : same_as) lines.push_back(fmt::format("= the same actions as in {}.", arm));
   lines.insert(lines.end(), of_some.begin(), of_some.end());

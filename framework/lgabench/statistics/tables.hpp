@@ -1,10 +1,10 @@
 // The parts of a run's tables: the columns that stand side by side, marks, notes.
 #pragma once
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <lgabench/record/reference_rows.hpp>
 #include <lgabench/statistics/about_suite.hpp>
 #include <lgabench/statistics/summary.hpp>
 
@@ -32,17 +32,8 @@ std::vector<View> views(const Table& table);
 /// scenarios have and the most demonstrations. None for a table without rows.
 std::optional<Column> main_column(const Table& table, const AboutSuite& about);
 
-/// A row's mark as tables show it.
-struct Mark {
-  const char *word, *sign, *meaning;
-};
-constexpr std::array<Mark, 6> table_marks{
-    {{"baseline_not_learned", "†", "below the best constant action with as many demonstrations: nothing was learned"},
-     {"below_random_object", "§", "below the random visible object, which needs no demonstration"},
-     {"incomplete", "‡", "incomplete: a cell failed, or the mean lacks a scenario"},
-     {"method_error", "!", "the method's own code failed in some of the episodes, which count as failures"},
-     {"ambiguous", "?", "ambiguous words, by which a person might mean something else: shown, in no mean"},
-     {"network", "¶", "reached the network on its own: in no leaderboard"}}};
+/// Rows' marks in the order in which tables show them, those of reference rows first.
+const std::vector<RowMark>& table_marks();
 
 /// "†§": the row's.
 std::string marks_text(const Row& row);

@@ -28,7 +28,7 @@ std::array<const Entry*, stages.size()> rows_of(const std::vector<Standing>& tab
     for (const Standing& s : table) {
       const Competitor& row = s.entry->identity.row;
       // The labels' rule masks scene by scene, which a row that selects alone cannot hand to another's policy.
-      if (row.id == stages[i].method && !row.is_reference() && s.entry->identity.reading.none() &&
+      if (row.id == stages[i].method && !row.is_reference() && s.entry->identity.conditions.none() &&
           (!row.acts || (i >= 2 && row.acts->id == "lga")) && policy_of(*s.entry) == "heat_map" &&
           answers_file(s.entry->identity).empty() && (has_frozen(s.entry) || !has_frozen(rows[i])) &&
           (!rows.back() || has_each_of(rows.back()->identity.row.options, row.options)))

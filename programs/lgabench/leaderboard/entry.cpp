@@ -41,9 +41,7 @@ Json to_json(const Identity& identity) {
             {"scene_seed", identity.scene_seed}};
   if (identity.row.acts) json["acts"] = to_json(*identity.row.acts);
   if (!identity.row.asks.empty()) json["asks"] = identity.row.asks;
-  const Reading& reading = identity.reading;
-  if (reading.names != Reading::simulator) json.update({{"names", reading.names}, {"reader", identity.reader_sha256}});
-  if (reading.segments != Reading::simulator) json["segments"] = reading.segments;
+  json.update(identity.conditions.json());
   return json;
 }
 

@@ -10,6 +10,7 @@
 #include <lgabench/core/descriptor.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/harness/answers.hpp>
+#include <lgabench/leaderboard/conditions.hpp>
 #include <lgabench/leaderboard/setting.hpp>
 #include <lgabench/leaderboard/vouched.hpp>
 #include <lgabench/record/outcome.hpp>
@@ -25,8 +26,7 @@ struct Identity {
   std::string engine, engine_version;
   std::string preset_sha256;  // hash(setting)
   std::uint64_t scene_seed = 0;
-  Reading reading{};            // of what the row sees
-  std::string reader_sha256{};  // of the model that reads names; "" where the simulator gives them
+  Conditions conditions{};
 };
 Json to_json(const Identity& identity);
 /// The board's copy of the answers that a row is based on, answers/SHA256.ENDING, relative to the board; "" where they
@@ -34,6 +34,8 @@ Json to_json(const Identity& identity);
 fs::path answers_file(const Identity& identity);
 /// Letters, digits, _ and -: an id that may stand in a path.
 bool is_id(const std::string& text);
+/// @throws InputError for what is not 64 hexadecimal digits.
+std::string read_sha256(const JsonReader& reader);
 /// The first 16 digits of the SHA-256 of its canonical JSON.
 std::string id_of(const Identity& identity);
 

@@ -22,12 +22,6 @@ constexpr std::uintmax_t most_bytes = 16 << 20;
 // Reads a file of an entry's cells or verifications; the largest published one has 130 kB.
 std::string read_bounded(const fs::path& file) { return read_file(file, Links::refused, most_bytes); }
 
-void expect_sha256(const JsonReader& reader) {
-  const std::string text = reader.string();
-  if (text.size() != 64 || text.find_first_not_of("0123456789abcdef") != std::string::npos)
-    reader.fail("64 hexadecimal digits");
-}
-
 void expect_time(const JsonReader& reader) {
   const std::string text = reader.string();
   std::tm time{};
@@ -36,8 +30,10 @@ void expect_time(const JsonReader& reader) {
 }
 
 Identity read_identity(const JsonReader& reader) {
-  reader.only({"method", "kind", "version", "options", "asks", "acts", "answers", "engine", "names", "reader",
-               "segments", "preset", "scene_seed"});
+  std::vector<std::string> members = Conditions::members();
+  members.insert(members.end(),
+                 {"method", "kind", "version", "options", "asks", "acts", "answers", "engine", "preset", "scene_seed"});
+  reader.only(members);
   Identity identity;
   identity.row.kind = reader.at("kind").string();
   if (identity.row.kind != "method" && identity.row.kind != "reference") reader.at("kind").fail("method or reference");
@@ -52,20 +48,12 @@ Identity read_identity(const JsonReader& reader) {
   answers.only({"source", "sha256"});
   engine.only({"id", "version"});
   identity.answers = read_answer_source(answers.at("source").string());
-  expect_sha256(answers.at("sha256"));
-  identity.answers_sha256 = answers.at("sha256").string();
+  identity.answers_sha256 = read_sha256(answers.at("sha256"));
   identity.engine = engine.at("id").string();
   if (!is_id(identity.engine)) engine.at("id").fail("an id of letters, digits, _ and -");
   identity.engine_version = engine.at("version").string();
-  if (reader.has("names")) {
-    identity.reading.names = reader.at("names").string();
-    if (!is_id(identity.reading.names)) reader.at("names").fail("an id of letters, digits, _ and -");
-    expect_sha256(reader.at("reader"));
-    identity.reader_sha256 = reader.at("reader").string();
-  }
-  if (reader.has("segments")) identity.reading.segments = read_segments(reader.at("segments"));
-  expect_sha256(reader.at("preset"));
-  identity.preset_sha256 = reader.at("preset").string();
+  identity.conditions = Conditions::read(reader);
+  identity.preset_sha256 = read_sha256(reader.at("preset"));
   identity.scene_seed = static_cast<std::uint64_t>(reader.at("scene_seed").integer(0, INT64_MAX));
   return identity;
 }
@@ -84,7 +72,7 @@ PlayedCell read_cell_line(const JsonReader& reader, const Entry& entry) {
   if (reader.has("failed")) cell.failed = reader.at("failed").string();
   for (const auto& [member, text] : {std::pair("scenes", &cell.scenes), {"digest", &cell.digest}})
     if (cell.failed.empty()) {
-      expect_sha256(reader.at(member));
+      read_sha256(reader.at(member));
       *text = reader.at(member).string();
     }
   const JsonReader outcomes = reader.at("outcomes");
@@ -142,7 +130,7 @@ void expect_about(const JsonReader& about) {
       source.at("commit").fail("40 hexadecimal digits");
   } else {
     source.at("file").string();
-    expect_sha256(source.at("sha256"));
+    read_sha256(source.at("sha256"));
   }
 }
 
@@ -188,7 +176,7 @@ Json read_supersedes(const JsonReader& reader) {
   if (reader.elements().empty()) reader.fail("at least one entry whose place this one took");
   for (const JsonReader& one : reader.elements()) {
     one.only({"hash", "when", "reason"});
-    expect_sha256(one.at("hash"));
+    read_sha256(one.at("hash"));
     expect_date(one.at("when"));
     if (!is_reason(one.at("reason").string()))
       one.at("reason").fail(fmt::format("1 to {} bytes in one line", longest_reason));
@@ -283,6 +271,13 @@ void expect_at(const fs::path& board, const fs::path& directory, const fs::path&
 }
 
 }  // namespace
+
+std::string read_sha256(const JsonReader& reader) {
+  const std::string text = reader.string();
+  if (text.size() != 64 || text.find_first_not_of("0123456789abcdef") != std::string::npos)
+    reader.fail("64 hexadecimal digits");
+  return text;
+}
 
 Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched* vouched) {
   Entry entry = read_files(board / directory, vouched);

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <set>
 
-#include <lgabench/leaderboard/standings.hpp>
+#include <lgabench/leaderboard/admission.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <lgabench/record/reference_rows.hpp>
 #include <lgabench/statistics/names.hpp>
 
 namespace lgabench::leaderboard {
@@ -40,6 +41,11 @@ Labels read_labels(const fs::path& board) {
   return labels;
 }
 
+std::string capital(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
 std::string label_of(const Labels& labels, const Entry& entry, const std::vector<std::string>& telling) {
   const Competitor& row = entry.identity.row;
   const Labels::RowLabel* best = nullptr;
@@ -48,16 +54,17 @@ std::string label_of(const Labels& labels, const Entry& entry, const std::vector
     for (const auto& [option, value] : label.options.items()) fits = fits && row.options.value(option, Json()) == value;
     if (fits && (!best || label.options.size() > best->options.size())) best = &label;
   }
-  std::string text = best ? best->label : entry.about.value("label", statistics::display_name(row.own_name()));
+  const ReferenceRow* reference = row.is_reference() ? find_reference_row(row.id) : nullptr;
+  std::string text = best        ? best->label
+                     : reference ? capital(reference->name)
+                                 : entry.about.value("label", statistics::display_name(row.own_name()));
   for (const std::string& option : telling) {
     if (!row.options.contains(option) || (best && best->options.contains(option))) continue;
     if (option == "policy" || option == "network") continue;
     const std::string words = words_for(labels, option + "=" + option_text(row.options.at(option)));
     text += (words.empty() ? "" : ", ") + words;
   }
-  const Reading& reading = entry.identity.reading;
-  for (const auto& [option, source] : {std::pair("names=", reading.names), {"segments=", reading.segments}})
-    if (source != Reading::simulator) text += ", " + words_for(labels, option + source);
+  for (const std::string& part : entry.identity.conditions.parts()) text += ", " + words_for(labels, part);
   return text;
 }
 

@@ -26,9 +26,10 @@ struct Labels {
 Labels read_labels(const fs::path& board);
 
 /// What the entry is called, of whose options those in `telling` tell it from other rows of the table: the words of
-/// `rows` with the most options that fit, else the label that its authors propose, else the method's name; then, unless
-/// they stand for them, the words of its telling options, "option=value" where `values` has none; then where its names
-/// and segments come from, likewise. An empty word is left out; `policy` and `network` stand in policy_label().
+/// `rows` with the most options that fit, else a reference row's name, else the label that its authors propose, else
+/// the method's name; then, unless they stand for them, the words of its telling options, "option=value" where `values`
+/// has none; then where its names and segments come from, likewise. An empty word is left out; `policy` and `network`
+/// stand in policy_label().
 std::string label_of(const Labels& labels, const Entry& entry, const std::vector<std::string>& telling);
 
 /// What its policy is called: the words of `policy`, and of `network` where that is the paper's; "its own" of a method
@@ -37,5 +38,8 @@ std::string policy_label(const Labels& labels, const Entry& entry);
 
 /// Whose answers it acts on, in a few words: "a model, recorded"; "" of what selects nothing.
 std::string answers_label(const Entry& entry);
+
+/// The text with a capital.
+std::string capital(std::string text);
 
 }  // namespace lgabench::leaderboard

@@ -90,7 +90,7 @@ std::optional<Grid> overview_grid(const Suites& suites, Ranking ranking) {
         head.title = statistics::about_suite(suite).question;
         grid.heads.emplace_back(std::move(head));
         for (const NamedStanding& s : table.standings) {
-          if (!s.entry->identity.reading.none()) continue;  // a row of its suite's page alone
+          if (!s.entry->identity.conditions.none()) continue;  // a row of its suite's page alone
           Numbers& row = rows[{s.label, s.policy, answers_label(*s.entry)}];
           row.reference = s.is_reference();
           if (row.cells.emplace(columns, number_cell(s, suite, first_row + table.row(s))).second)

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <set>
 
 #include <lgabench/document/writers.hpp>
@@ -77,46 +76,38 @@ Document readme(const Suites& suites) {
 
 std::string number(double value) { return fmt::format("{:.6g}", value); }
 
+// A line's cells: `first`, the row's conditions, `rest`.
+std::string csv_line_of(const Conditions& conditions, std::string std::pair<std::string, std::string>::*which,
+                        std::vector<std::string> first, const std::vector<std::string>& rest) {
+  for (const auto& one : conditions.values()) first.push_back(one.*which);
+  first.insert(first.end(), rest.begin(), rest.end());
+  return csv_line(first);
+}
+
 std::string csv_of(const Suites& suites) {
-  std::string text =
-      csv_line({"suite",   "preset",     "preset_hash", "scene_seed", "id",       "method",         "name",
-                "version", "engine",     "answers",     "names",      "segments", "demonstrations", "ranking",
-                "rank",    "success",    "low",         "high",       "episodes", "failed_cells",   "precision",
-                "recall",  "lm_queries", "lm_tokens",   "learn_s",    "tier",     "not_ranked",     "by"});
+  using Column = std::pair<std::string, std::string>;
+  std::string text = csv_line_of(
+      {}, &Column::first,
+      {"suite", "preset", "preset_hash", "scene_seed", "id", "method", "name", "version", "engine", "answers"},
+      {"demonstrations", "ranking", "rank", "success", "low", "high", "episodes", "failed_cells", "precision", "recall",
+       "lm_queries", "lm_tokens", "learn_s", "tier", "not_ranked", "by"});
   for (const auto& suite : suites)
     for (const NamedTable& table : suite.second)
       for (const NamedStanding& s : table.standings) {
         const Identity& identity = s.entry->identity;
         const auto line = [&](const std::string& n, double success, bool all) {
           const auto when_all = [all](const std::string& value) { return all ? value : std::string(); };
-          text += csv_line({table.setting.suite,
-                            table.setting.preset,
-                            identity.preset_sha256.substr(0, 8),
-                            std::to_string(identity.scene_seed),
-                            s.entry->id(),
-                            identity.row.own_name(),
-                            display_name(s.name),
-                            identity.row.version,
-                            identity.engine,
-                            to_string(identity.answers),
-                            identity.reading.names,
-                            identity.reading.segments,
-                            n,
-                            to_string(table.ranking),
-                            when_all(s.rank ? std::to_string(*s.rank) : ""),
-                            number(success),
-                            when_all(number(s.interval.low)),
-                            when_all(number(s.interval.high)),
-                            when_all(std::to_string(s.episodes)),
-                            when_all(std::to_string(s.failed_cells)),
-                            when_all(s.precision ? number(*s.precision) : ""),
-                            when_all(s.recall ? number(*s.recall) : ""),
-                            when_all(number(s.lm_queries)),
-                            when_all(number(s.lm_tokens)),
-                            when_all(number(s.learn_s)),
-                            when_all(to_string(s.entry->tier())),
-                            when_all(s.not_ranked),
-                            when_all(s.entry->about.at("by"))});
+          text += csv_line_of(
+              identity.conditions, &Column::second,
+              {table.setting.suite, table.setting.preset, identity.preset_sha256.substr(0, 8),
+               std::to_string(identity.scene_seed), s.entry->id(), identity.row.own_name(), display_name(s.name),
+               identity.row.version, identity.engine, to_string(identity.answers)},
+              {n, to_string(table.ranking), when_all(s.rank ? std::to_string(*s.rank) : ""), number(success),
+               when_all(number(s.interval.low)), when_all(number(s.interval.high)),
+               when_all(std::to_string(s.episodes)), when_all(std::to_string(s.failed_cells)),
+               when_all(s.precision ? number(*s.precision) : ""), when_all(s.recall ? number(*s.recall) : ""),
+               when_all(number(s.lm_queries)), when_all(number(s.lm_tokens)), when_all(number(s.learn_s)),
+               when_all(to_string(s.entry->tier())), when_all(s.not_ranked), when_all(s.entry->about.at("by"))});
         };
         line("all", s.score, true);
         for (const auto& [n, rate] : s.at) line(std::to_string(n), rate, false);
@@ -181,10 +172,9 @@ bool ranks_entries(const NamedTable& table) {
   return std::any_of(table.standings.begin(), table.standings.end(), [](const Standing& s) { return s.rank; });
 }
 
-// In the order in which a reader needs them, then by name; suites for diagnosis, without a rank, come last.
-Suites suites_of(const std::vector<Entry>& entries, const Labels& labels, const Tracks& tracks, const Told& told) {
-  constexpr std::array order{"q1",     "clutter", "q2",    "q3",        "few_members", "many_commands",
-                             "mobile", "fetch",   "drawn", "robustness"};
+// In the order of tracks.json, then by name; suites for diagnosis, without a rank, come last.
+Suites suites_of(const std::vector<Entry>& entries, const Labels& labels, const Tracks& tracks,
+                 const std::vector<std::string>& order, const Told& told) {
   std::map<std::pair<std::ptrdiff_t, std::string>, std::vector<NamedTable>> by_place;
   const auto all = tables(entries);
   std::size_t done = 0;
@@ -216,7 +206,7 @@ std::map<fs::path, std::string> made_files(const fs::path& board, const std::vec
   const Labels labels = read_labels(board);
   std::map<fs::path, Marked> marked;
   for (const fs::path& document : documents_in(documents)) marked[document] = read_marked(document);
-  const Suites suites = suites_of(entries, labels, tracks, told);
+  const Suites suites = suites_of(entries, labels, tracks, read_order(board), told);
   std::map<fs::path, std::string> files;
   files[board / "README.md"] = markdown(readme(suites));
   files[board / "index.html"] = html(overview(suites), overview_data(suites), "leaderboard.js");

@@ -41,13 +41,12 @@ void expect_method(const Competitor& row, const Catalogue& catalogue) {
   expect_same("options of " + row.id, canonical(resolve_options(installed, row.options)), canonical(row.options));
 }
 
-// The entry's cells here. @throws InputError where another model reads names than the entry's.
+// The entry's cells here. @throws InputError where they would be played under others than the entry's.
 std::vector<Cell> cells_of(const Entry& entry, const Installed& installed) {
   const Identity& identity = entry.identity;
-  std::vector<Cell> cells = cells_of_row(installed, identity.row, identity.engine, identity.answers, identity.reading);
-  for (const Cell& cell : cells)
-    expect_same("model that reads names (" + identity.reading.names + ")", cell.data.value("reader", ""),
-                identity.reader_sha256);
+  std::vector<Cell> cells =
+      cells_of_row(installed, identity.row, identity.engine, identity.answers, identity.conditions);
+  for (const Cell& cell : cells) identity.conditions.expect_same(cell);
   return cells;
 }
 

@@ -84,9 +84,9 @@ std::string other_setting(const Json& cell, const Json& expected) {
     return fmt::format("{} is {}, the board's preset has {}", member, canonical(there), canonical(value));
   }
   if (cell.contains("selection_errors")) return "errors were made in what was selected (selection_errors)";
-  for (const char* source : {"names", "segments"})
-    if (cell.contains(source) && !expected.contains(source))
-      return fmt::format("{} is {}, unlike in other cells of the row", source, canonical(cell.at(source)));
+  for (const auto& [member, ignored] : Conditions().values())
+    if (cell.contains(member) && !expected.contains(member))
+      return fmt::format("{} is {}, unlike in other cells of the row", member, canonical(cell.at(member)));
   if (cell.contains("train_on")) return "demonstrations were seen through a perturbation (train_on)";
   return cell.contains("participant") ? "based on a person's answers, for which the board has no place" : "";
 }
@@ -182,16 +182,15 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Catalogu
   entry.identity.answers_sha256 = answers_hash(run.directory, installed, first, reasons);
   entry.identity.engine = first.engine;
   entry.identity.engine_version = version_of(run, "engine", first.engine);
-  entry.identity.reading = first.reading;
-  entry.identity.reader_sha256 = first.data.value("reader", "");
-  if (const std::string id = first.reading.plugin(); !id.empty())
-    reasons.add(fmt::format("{}: a plugin ({}) read its names, which no leaderboard ranks", first.method.name, id));
+  const Conditions conditions = entry.identity.conditions = Conditions::of(first);
+  if (const std::string refusal = conditions.refusal(); !refusal.empty())
+    reasons.add(first.method.name + ": " + refusal);
   entry.identity.preset_sha256 = hash(installed.setting);
   entry.identity.scene_seed = installed.setting.scene_seed;
   const bool may_be_told =
       first.method.is_reference() || is_shipped(first.method.id, version_of(run, "method", first.method.id), shipped);
   Json data = Json::object();
-  const std::vector<Cell> cells = cells_of_row(installed, first.method, first.engine, first.answers, first.reading);
+  const std::vector<Cell> cells = cells_of_row(installed, first.method, first.engine, first.answers, conditions);
   std::vector<std::string> missing;
   for (const Cell& cell : cells) {
     const Place place{cell.scenario_id(), cell.layout, cell.demonstrations, cell.training_seed};
@@ -217,7 +216,7 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Catalogu
   }
   add_missing(first.method.name, missing, cells.size(), reasons);
   const auto played = [](const PlayedCell& cell) { return cell.failed.empty(); };
-  if (entry.cells.size() == cells.size() && first.reading.none() &&  // names read change no answer
+  if (entry.cells.size() == cells.size() && conditions.none() &&  // they change no answer
       std::all_of(entry.cells.begin(), entry.cells.end(), played)) {
     const fs::path kept = answers_file(entry.identity).filename();
     const fs::path file = kept.empty() ? kept : run.directory / "answers" / kept;

@@ -6,6 +6,7 @@
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/leaderboard/suite_page.hpp>
 #include <lgabench/leaderboard/verification.hpp>
+#include <lgabench/record/reference_rows.hpp>
 #include <lgabench/statistics/tables.hpp>
 
 namespace lgabench::leaderboard {
@@ -71,15 +72,8 @@ Span rank_span(const Standing& standing) {
 std::string tier_and_marks(const Standing& s) {
   std::vector<std::string> words{to_string(s.entry->tier())};
   if (!s.not_ranked.empty()) words.push_back(s.not_ranked);
-  if (s.entry->has_answers_as_submitted() && s.not_ranked != as_submitted) words.emplace_back(as_submitted);
-  const std::string confined = s.entry->evidence.front().at("confinement");
-  if (confined.rfind("Landlock ", 0) != 0 || confined.find("no ") != std::string::npos)
-    words.emplace_back("unconfined");
-  else if (confined.find("without") != std::string::npos)
-    words.emplace_back("partly confined");
-  if (s.failed_cells > 0) words.push_back(fmt::format("{} cells failed", s.failed_cells));
-  if (s.entry->fresh() > 0) words.emplace_back("fresh");
-  for (std::string& claim : claims(*s.entry)) words.push_back(std::move(claim));
+  for (std::string& mark : marks_of(*s.entry))
+    if (mark != s.not_ranked) words.push_back(std::move(mark));
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
@@ -92,11 +86,9 @@ std::string interval_text(const Standing& s) {
 std::string score_text(const Standing& standing) { return score_text(standing.score) + " " + interval_text(standing); }
 
 Span below_random_mark() {
-  const auto mark =
-      std::find_if(statistics::table_marks.begin(), statistics::table_marks.end(),
-                   [](const statistics::Mark& one) { return one.word == std::string_view("below_random_object"); });
-  Span span(mark->sign);
-  span.title = mark->meaning;
+  const RowMark& mark = *find_reference_row(random_object)->below_it;
+  Span span(mark.sign);
+  span.title = mark.meaning;
   return span;
 }
 
@@ -123,49 +115,44 @@ std::optional<Grid> waiting_grid(const NamedTable& table) {
 
 Section words_of_the_board() {
   Section section{"words", "What the words mean"};
-  section.add<document::Facts>(
-      reading,
-      {{{"rank",
-         "1 plus the number of entries that are significantly better (paired test on these scenes, Holm’s "
-         "correction) in this ranking, and never less than the rank of an entry with more success. Entries "
-         "of one rank are not known to differ, which does not mean that they perform equally. All rows count, also "
-         "those that a page hides at first."},
-        {"–", "no rank: a reference, or a row that the column \"known\" gives a reason for."},
-        {"any policy, paper’s network, answers only",
-         "three rankings. Any policy: all that learns and acts. Paper’s network: only methods that learn as the paper "
-         "does. Answers only: one policy for all, so that rows differ in what is selected alone."},
-        {"policy",
-         "what learns to act: the paper’s network; a heat map of places, which is trained; the centroid of "
-         "the mask, which is not; or the method’s own."},
-        {"φ̂",
-         "what a method selects as what matters. Precision: the share of it that is right. Recall: the share of "
-         "what is right that it has."},
-        {"reference",
-         "not methods: the same action everywhere, any visible object, the expert that demonstrates. "
-         "They stand where their success puts them, and have no rank."},
-        {"§", "below the random visible object, which needs no demonstration."},
-        {"[0.51, 0.57]", "a 95 % interval."},
-        {"recomputed", "the numbers follow from the entry’s files; nothing was played again."},
-        {"replayed",
-         "a maintainer’s build played some of its cells again, chosen by bits drawn after it was written, "
-         "and got the same."},
-        {"reproduced", "so did another person, on another machine."},
-        {"fresh", "played on scenes that nobody knew when it was submitted, and no worse there."},
-        {"not yet replayed", "what the files of an entry claim; nobody has played it again, and it has no rank."},
-        {"claimed by", "reported by the person named; no maintainer has confirmed it."},
-        {"answers",
-         "whose words say what matters: recorded with the benchmark, a language model’s replies, or a file that the "
-         "entry brings."},
-        {as_submitted,
-         "that file is used as it came. Nobody can ask whoever gave the answers again, and the truth of shipped "
-         "commands is public, so the file may be a copy of it: the row has no rank."},
-        {"the truth stands in for people",
-         "the row needs people’s answers, and was given the true features: an upper "
-         "bound, without a rank."},
-        {"partly confined, unconfined", "the kernel could not keep the method from some files or calls."},
-        {"n = 10", "success with 10 demonstrations."},
-        {"training s", "seconds of training of one policy, on the submitter’s machine."}},
-       true});
+  std::vector<std::pair<std::string, std::string>> words{
+      {"rank",
+       "1 plus the number of entries that are significantly better (paired test on these scenes, Holm’s "
+       "correction) in this ranking, and never less than the rank of an entry with more success. Entries "
+       "of one rank are not known to differ, which does not mean that they perform equally. All rows count, also "
+       "those that a page hides at first."},
+      {"–", "no rank: a reference, or a row that the column \"known\" gives a reason for."},
+      {"any policy, paper’s network, answers only",
+       "three rankings. Any policy: all that learns and acts. Paper’s network: only methods that learn as the paper "
+       "does. Answers only: one policy for all, so that rows differ in what is selected alone."},
+      {"policy",
+       "what learns to act: the paper’s network; a heat map of places, which is trained; the centroid of "
+       "the mask, which is not; or the method’s own."},
+      {"φ̂",
+       "what a method selects as what matters. Precision: the share of it that is right. Recall: the share of "
+       "what is right that it has."},
+      {"reference",
+       "not methods: the same action everywhere, any visible object, the expert that demonstrates. "
+       "They stand where their success puts them, and have no rank."},
+      {"§", "below the random visible object, which needs no demonstration."},
+      {"[0.51, 0.57]", "a 95 % interval."},
+      {"recomputed", "the numbers follow from the entry’s files; nothing was played again."},
+      {"replayed",
+       "a maintainer’s build played some of its cells again, chosen by bits drawn after it was written, "
+       "and got the same."},
+      {"reproduced", "so did another person, on another machine."},
+      {"fresh", "played on scenes that nobody knew when it was submitted, and no worse there."},
+      {"not yet replayed", "what the files of an entry claim; nobody has played it again, and it has no rank."},
+      {"claimed by", "reported by the person named; no maintainer has confirmed it."},
+      {"answers",
+       "whose words say what matters: recorded with the benchmark, a language model’s replies, or a file that the "
+       "entry brings."}};
+  for (auto& meaning : meanings_of_marks()) words.push_back(std::move(meaning));
+  words.insert(words.end(),
+               {{"partly confined, unconfined", "the kernel could not keep the method from some files or calls."},
+                {"n = 10", "success with 10 demonstrations."},
+                {"training s", "seconds of training of one policy, on the submitter’s machine."}});
+  section.add<document::Facts>(reading, {std::move(words), true});
   return section;
 }
 

@@ -128,20 +128,19 @@ Installed installed_setting(const std::string& suite, const std::string& preset)
 }
 
 std::vector<Cell> cells_of_row(const Installed& installed, const Competitor& row, const std::string& engine,
-                               const AnswerSource& answers, const Reading& reading) {
+                               const AnswerSource& answers, const Conditions& conditions) {
   std::vector<Cell> cells;
   Cell cell;
   for (const Place& place : installed.setting.places(learns(row))) {
     if (cells.empty() || !(place.scenario == cells.back().scenario_id())) {
       const Scenario scenario = suite_scenario(installed.suite, place.scenario, Truth::released, &installed.design);
       cell = unplayed_cell(installed.suite, installed.design, scenario, answers);
-      cell.reading = reading;
-      if (!reading.none()) cell.data = data_hashes(scenario, answers, reading);
+      conditions.set(cell, scenario);
     }
     cell.layout = place.layout;
     cell.engine = engine;
     cell.method = row;
-    cell.method.name = row.own_name() + reading.suffix();
+    cell.method.name = row.own_name() + conditions.suffix();
     cell.demonstrations = place.demonstrations;
     cell.training_seed = place.seed;
     cells.push_back(cell);

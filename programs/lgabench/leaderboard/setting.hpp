@@ -7,6 +7,7 @@
 
 #include <lgabench/core/json.hpp>
 #include <lgabench/harness/expand.hpp>
+#include <lgabench/leaderboard/conditions.hpp>
 
 namespace lgabench::leaderboard {
 
@@ -70,6 +71,6 @@ Installed installed_setting(const std::string& suite, const std::string& preset)
 /// The cells of a row, in the order of places(). Their keys are those of a run of this row alone. @throws InputError
 /// where the environment has no such reader.
 std::vector<Cell> cells_of_row(const Installed& installed, const Competitor& row, const std::string& engine,
-                               const AnswerSource& answers, const Reading& reading = {});
+                               const AnswerSource& answers, const Conditions& conditions = {});
 
 }  // namespace lgabench::leaderboard

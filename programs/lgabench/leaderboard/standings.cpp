@@ -9,6 +9,7 @@
 
 #include <lgabench/abstraction/quality.hpp>
 #include <lgabench/leaderboard/areas.hpp>
+#include <lgabench/record/reference_rows.hpp>
 #include <lgabench/statistics/bootstrap.hpp>
 
 namespace lgabench::leaderboard {
@@ -138,7 +139,7 @@ void add_gaps(std::vector<Standing>& all, const Track& track) {
   for (Standing& standing : all) {
     standing.in_track = in_track(standing, track);
     const Competitor& row = standing.entry->identity.row;
-    if (row.acts || policy_of(*standing.entry) != "heat_map" || !standing.entry->identity.reading.none()) continue;
+    if (row.acts || policy_of(*standing.entry) != "heat_map" || !standing.entry->identity.conditions.none()) continue;
     if (row.id == "factorial" && row.options.value("input", Json()) == "object_mask") any = standing.in_track;
     if (row.id == "human") truth = standing.in_track;
   }
@@ -165,61 +166,16 @@ void add_ranks(std::vector<Standing>& all, const statistics::SharedResamples& re
   }
 }
 
-// In the abstraction track: truths are public, so that nothing but a method on given answers can be ranked.
-std::string why_not_in_track(const Entry& entry, const Track& track) {
-  if (track.persons) return "";
-  if (track.answers.empty()) return "no ranks: the truths are public";
-  std::set<std::string> asked = provenances_of(entry);
-  asked.erase("none");
-  if (asked.empty() || to_string(entry.identity.answers) == track.answers) return "";
-  return "other answers than the frozen ones";
-}
-
 }  // namespace
-
-std::set<std::string> provenances_of(const Entry& entry) {
-  std::set<std::string> all;
-  for (const auto& scenario : entry.phi.items())
-    for (const Json& list : scenario.value())
-      for (const Json& command : list) all.insert(command.at("selection").at("provenance").get<std::string>());
-  return all;
-}
-
-std::string why_not_ranked(const Entry& entry, const Track& track) {
-  if (entry.identity.row.is_reference()) return "reference";
-  if (entry.identity.row.asks == "truth" || entry.identity.row.asks == "network")
-    return "asks for the " + entry.identity.row.asks;
-  if (entry.fresh() < 0) return "differs on fresh scenes";
-  if (!entry.was_replayed()) return "not yet replayed";
-  if (entry.replay_differed()) return "a replay differed";
-  const std::set<std::string> provenances = provenances_of(entry);
-  if (provenances.count("truth") > 0 || (!track.persons && provenances.count("simulated_edit") > 0))
-    return "the truth stands in for people";
-  if (entry.has_answers_as_submitted()) return as_submitted;
-  if (track.persons && entry.fresh() == 0) return "not yet played with other persons";
-  return "";
-}
-
-std::string policy_of(const Entry& entry) {
-  const Competitor& row = entry.identity.row;
-  const Json policy = (row.acts ? row.acts->options : row.options).value("policy", Json());
-  return policy.is_string() ? policy.get<std::string>() : "";
-}
 
 std::vector<Standing> standings(const std::vector<const Entry*>& table, const Track& track, Ranking ranking) {
   std::vector<Standing> all;
   std::vector<Rates> rates;
   for (const Entry* entry : table) {
-    if (entry->is_withdrawn() || !entry->was_replayed()) continue;
-    if (ranking == Ranking::papers_network && !entry->identity.row.is_reference() && policy_of(*entry) != "regression")
-      continue;
+    if (entry->is_withdrawn() || !entry->was_replayed() || !is_in(*entry, ranking)) continue;
     Standing& standing = all.emplace_back();
     standing.entry = entry;
     standing.not_ranked = why_not_ranked(*entry, track);
-    if (standing.not_ranked.empty() && track.kind == Track::abstraction)
-      standing.not_ranked = why_not_in_track(*entry, track);
-    if (standing.not_ranked.empty() && !entry->identity.reading.none() && !track.names_read)
-      standing.not_ranked = names_were_read;
     add_rates(standing);
     add_costs(standing);
     rates.push_back(rates_of(*entry));
@@ -237,8 +193,8 @@ std::vector<Standing> standings(const std::vector<const Entry*>& table, const Tr
   int before = 1;
   for (Standing& standing : all)
     if (standing.rank) before = *standing.rank = std::max(*standing.rank, before);
-  const auto random = std::find_if(all.begin(), all.end(),
-                                   [](const Standing& s) { return s.entry->identity.row.id == "random_object"; });
+  const auto random =
+      std::find_if(all.begin(), all.end(), [](const Standing& s) { return s.entry->identity.row.id == random_object; });
   if (random != all.end())
     for (Standing& standing : all) standing.below_random = !is_reference(standing) && standing.score < random->score;
   return all;

@@ -2,12 +2,10 @@
 #pragma once
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
-#include <lgabench/leaderboard/entry.hpp>
-#include <lgabench/leaderboard/tracks.hpp>
+#include <lgabench/leaderboard/admission.hpp>
 #include <lgabench/statistics/statistics.hpp>
 
 namespace lgabench::leaderboard {
@@ -39,22 +37,6 @@ using Rates = std::vector<std::vector<std::vector<double>>>;
 /// An entry's, over all arms and numbers of demonstrations; with an arm those of it alone, at one number of
 /// demonstrations, in the scenarios that have it.
 Rates rates_of(const Entry& entry, const std::string& only_arm = "", int only_demonstrations = 0);
-
-/// The mark of an entry whose answers are a file that its authors wrote, which may be a copy of the truth.
-inline constexpr const char* as_submitted = "answers as submitted";
-
-/// The mark of an entry that read names from pictures, in a table that does not rank by that (Track::names_read).
-inline constexpr const char* names_were_read = "names read from pictures";
-
-/// Where its Selections come from.
-std::set<std::string> provenances_of(const Entry& entry);
-
-/// Why an entry has no place among the ranked: "" for one that has.
-std::string why_not_ranked(const Entry& entry, const Track& track = {});
-
-/// The option of that name, of the method that acts: "regression" is the paper's network; "" where a method or a
-/// reference row has none.
-std::string policy_of(const Entry& entry);
 
 /// The entries of one ranking by score, among them those that have no rank. Entries that were withdrawn, or not yet
 /// replayed, are left out. All share their resamples of test scenes and training seeds (statistics/bootstrap.hpp),

@@ -27,14 +27,13 @@ std::string success_bits(const Entry& entry) {
   return base64(bytes);
 }
 
-// `says_names`: also the simulator's, where the preset has others.
-std::string command_of(const Entry& entry, bool says_names) {
+std::string command_of(const Entry& entry, const Track& track) {
   const Identity& identity = entry.identity;
   std::vector<std::string> words{"lgabench",           "run",       entry.setting.suite, "--preset",
                                  entry.setting.preset, "--engines", identity.engine};
   if (!identity.row.is_reference()) words.insert(words.end(), {"--methods", entry.spec(), "--no-reference"});
-  if (says_names && !identity.row.is_reference())
-    words.insert(words.end(), {"--names", identity.reading.names, "--segments", identity.reading.segments});
+  if (!identity.row.is_reference())
+    for (const std::string& word : identity.conditions.arguments(track)) words.push_back(word);
   const std::string kept = answers_file(identity).string();
   words.insert(words.end(), {"--answers", kept.empty() ? to_string(identity.answers)
                                           : std::holds_alternative<FileAnswers>(identity.answers)
@@ -113,7 +112,7 @@ Json suite_data(const std::vector<NamedTable>& tables, const BoardScenes& scenes
                          {"version", entry.identity.row.version},
                          {"answers", to_string(entry.identity.answers)},
                          {"kept_answers", answers_file(entry.identity).string()},
-                         {"command", command_of(entry, table.track.names_read || !entry.identity.reading.none())},
+                         {"command", command_of(entry, table.track)},
                          {"authors", entry.about.at("authors")},
                          {"license", entry.about.at("license")},
                          {"source", link_of(source_span(entry))},

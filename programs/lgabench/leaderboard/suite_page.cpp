@@ -62,7 +62,7 @@ std::vector<NamedStanding> named(const std::vector<Standing>& standings, const L
     s.name = identity.row.own_name();
     for (const auto& [option, value] : identity.row.options.items())
       if (telling.count(option) > 0) s.name += fmt::format("+{}={}", option, option_text(value));
-    s.name += identity.reading.suffix();
+    s.name += identity.conditions.suffix();
     ++times[s.name];
     s.label = label_of(words, *s.entry, options);
     s.policy = policy_label(words, *s.entry);
@@ -83,15 +83,15 @@ std::vector<NamedStanding> named(const std::vector<Standing>& standings, const L
 }
 
 // The first row of a method is its best, as rows stand by rank and success, and stays in view; so does the best whose
-// policy was trained. Each file of answers that somebody submits competes for itself, and so does each way to read
-// names.
+// policy was trained. Each file of answers that somebody submits competes for itself, and so do rows of other
+// conditions.
 void mark_more(std::vector<NamedStanding>& standings) {
   std::set<std::string> known;
   for (NamedStanding& s : standings) {
     const std::string answers = s.entry->has_answers_as_submitted() ? s.entry->identity.answers_sha256 : "";
     const Identity& identity = s.entry->identity;
     const std::string untrained = policy_of(*s.entry) == "centroid" ? " untrained" : "";
-    s.more = !known.insert(identity.row.own_name() + identity.reading.suffix() + " " + answers + untrained).second;
+    s.more = !known.insert(identity.row.own_name() + identity.conditions.suffix() + " " + answers + untrained).second;
   }
 }
 
@@ -262,11 +262,6 @@ Grid heat_grid(const NamedTable& table, std::size_t first_row) {
 }
 
 }  // namespace
-
-std::string capital(std::string text) {
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text;
-}
 
 Grid grid_of(const NamedTable& table, const std::string& what, std::string caption) {
   Grid grid;

@@ -16,7 +16,7 @@ Tracks read_tracks(const fs::path& board) {
   if (!fs::exists(fs::symlink_status(file))) return {};
   const Json json = read_json(file, Links::refused);
   const JsonReader reader(json, file.string());
-  reader.only({"abstraction", "frozen", "open", "names_read", "persons"});
+  reader.only({"suites", "abstraction", "frozen", "open", "names_read", "persons"});
   Tracks tracks;
   const auto add = [&tracks](const JsonReader& place, const std::string& preset, Track track) {
     if (!tracks.emplace(preset, std::move(track)).second) place.fail("each preset in one track");
@@ -44,6 +44,14 @@ Tracks read_tracks(const fs::path& board) {
   if (reader.has("persons"))
     for (const std::string& preset : reader.at("persons").strings()) tracks[preset].persons = true;
   return tracks;
+}
+
+std::vector<std::string> read_order(const fs::path& board) {
+  const fs::path file = board / tracks_file;
+  if (!fs::exists(fs::symlink_status(file))) return {};
+  const Json json = read_json(file, Links::refused);
+  const JsonReader reader(json, file.string());
+  return reader.has("suites") ? reader.at("suites").strings() : std::vector<std::string>();
 }
 
 void expect_arms(const fs::path& board, const Tracks& tracks, const Setting& setting) {

@@ -26,6 +26,8 @@ using Tracks = std::map<std::string, Track>;
 
 /// Those of the board's tracks.json; none where there is no such file. @throws InputError with file and place.
 Tracks read_tracks(const std::filesystem::path& board);
+/// The suites that pages have first, in their order, by the same file. @throws as read_tracks().
+std::vector<std::string> read_order(const std::filesystem::path& board);
 /// @throws InputError with file and place for an arm of the setting's track that none of its scenarios has.
 void expect_arms(const std::filesystem::path& board, const Tracks& tracks, const Setting& setting);
 

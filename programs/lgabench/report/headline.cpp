@@ -7,6 +7,7 @@
 #include <set>
 
 #include <lgabench/document/writers.hpp>
+#include <lgabench/record/reference_rows.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/statistics/claims_field.hpp>
 #include <lgabench/statistics/pairs.hpp>
@@ -17,7 +18,6 @@ namespace lgabench::report {
 namespace {
 
 constexpr std::size_t most_others = 3;  // beside the random visible object
-constexpr const char* random_row = "random_object";
 
 // Of a table's methods the `most` that a reader would compare the first one with: those that the paper does not have,
 // then its baselines.
@@ -55,7 +55,7 @@ std::optional<Change> against_random(const Material& material, const Table& tabl
         cell.engine != table.engine || !has_arm(cell, column.arm))
       continue;
     const auto same = std::find_if(material.run.cells.begin(), material.run.cells.end(), [&](const CellResult& other) {
-      return other.id == random_row && !other.failed && other.scenario == cell.scenario &&
+      return other.id == random_object && !other.failed && other.scenario == cell.scenario &&
              other.layout == cell.layout && other.engine == cell.engine && has_arm(other, column.arm) && !cell.failed &&
              why_unpaired(other, cell, column.arm).empty();
     });
@@ -135,7 +135,7 @@ Spans headline(const Material& material, const AboutSuite& about) {
     };
     for (const std::string& other : most_compared(methods, most_others))
       add(against_method(material, table, first, other, *column), material.styles.name(other));
-    add(against_random(material, table, first, *column), "the " + display_name(random_row));
+    add(against_random(material, table, first, *column), "the " + display_name(random_object));
   }
   spans.emplace_back(any ? " (95 % intervals of the paired differences)." : ".");
   std::vector<std::string> verdicts;
@@ -270,12 +270,12 @@ Brief brief(const Material& material) {
       if (id == methods.front() || std::count(others.begin(), others.end(), id) > 0) ids.push_back(id);
     const std::size_t left_out = methods.size() - ids.size();
     for (const std::string& id : references)
-      if (id == "constant_action" || id == "random_object") ids.push_back(id);
+      if (const ReferenceRow* row = find_reference_row(id); row && row->below_it) ids.push_back(id);
     for (const Shown shown : {Shown::intervals, Shown::rates, Shown::main_and_mean}) {
       Means means{material, table, *main};
       brief.means = means.grid(ids, shown);
       if (shown != Shown::main_and_mean && width_of(terminal(brief.means)) > most_columns) continue;
-      for (const Mark& mark : table_marks)
+      for (const RowMark& mark : table_marks())
         if (means.marks.count(mark.word) > 0) brief.notes.push_back(fmt::format("{} {}.", mark.sign, mark.meaning));
       break;
     }

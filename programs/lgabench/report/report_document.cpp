@@ -109,7 +109,7 @@ Spans marks_spans(const Row& row) {
     spans.push_back(Span::number(sign));
     spans.back().title = meaning;
   };
-  for (const Mark& mark : table_marks)
+  for (const RowMark& mark : table_marks())
     if (row.marked(mark.word)) add(mark.sign, mark.meaning);
   if (acts_the_same(row)) {
     spans.push_back(Span::number(" "));

@@ -291,13 +291,14 @@ TEST(Board, StepsAreOfRowsWithEqualOptionsAndAddUp) {
   EXPECT_NEAR(steps("gpt4_released")->success[2], .3, .1);
 }
 
-TEST(Board, SuitesComeInThePapersOrderAndThoseWithoutARankLast) {
+TEST(Board, SuitesComeInTheOrderOfTracksAndThoseWithoutARankLast) {
   const TemporaryDirectory board;
   for (const char* suite : {"z_ranked", "a_diagnosis", "mobile", "q1"}) {
     Setting setting = small_setting();
     setting.suite = suite;
     write_replayed(board.path, made_entry(setting, "a", .5, *suite == 'a' ? "reference" : "method"));
   }
+  write_file(board.path / tracks_file, R"({"suites": ["q1", "mobile"]})");
   build(board.path);
   const std::string page = read_file(board.path / "README.md");
   EXPECT_LT(page.find("(q1.html)"), page.find("(mobile.html)"));
@@ -315,8 +316,8 @@ TEST(Board, ARowBelowTheRandomObjectSaysSo) {
   EXPECT_SAYS(page, "]§ |");
   EXPECT_SAYS(page, "§ below the random visible object, which needs no demonstration.");
   EXPECT_SAYS(suite, "<span title=\"below the random visible object, which needs no demonstration\">§</span>");
-  EXPECT_LT(suite.find("method of m1<"), suite.find("random visible object<"));
-  EXPECT_LT(suite.find("random visible object<"), suite.find("method of m0<"));
+  EXPECT_LT(suite.find("method of m1<"), suite.find("Random visible object<"));
+  EXPECT_LT(suite.find("Random visible object<"), suite.find("method of m0<"));
 }
 
 // q1 with a policy on the paper's network and one beside it.

@@ -36,7 +36,7 @@ TEST(LeaderboardPublished, EveryEntryAndCellHasTheNameThatItHad) {
     const Installed& installed = presets.at(preset);
     EXPECT_EQ(hash(installed.setting), entry.identity.preset_sha256) << directory;
     const std::vector<Cell> cells =
-        cells_of_row(installed, row, entry.identity.engine, entry.identity.answers, entry.identity.reading);
+        cells_of_row(installed, row, entry.identity.engine, entry.identity.answers, entry.identity.conditions);
     ASSERT_EQ(cells.size(), entry.cells.size()) << directory;
     for (std::size_t i = 0; i < cells.size(); i += 10) {
       Cell cell = cells[i];

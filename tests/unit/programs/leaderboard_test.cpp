@@ -717,8 +717,7 @@ TEST(Standings, NamesReadAreRankedWhereTheTrackSaysSo) {
   Entry read = replayed_entry(small_setting(), "a", .9), plain = replayed_entry(small_setting(), "b", .5);
   const std::string before = plain.id();
   EXPECT_FALSE(to_json(plain.identity).contains("names")) << "ids of entries of before stay";
-  read.identity.reading = {"read", Reading::difference};
-  read.identity.reader_sha256 = std::string(64, 'd');
+  read.identity.conditions = {{"read", Reading::difference}, std::string(64, 'd')};
   EXPECT_NE(read.id(), before);
   const auto by_id = [&](const Track& track) {
     std::map<std::string, Standing> all;
@@ -726,7 +725,7 @@ TEST(Standings, NamesReadAreRankedWhereTheTrackSaysSo) {
     return all;
   };
   auto all = by_id({});
-  EXPECT_EQ(all.at(read.id()).not_ranked, names_were_read);
+  EXPECT_EQ(all.at(read.id()).not_ranked, "names read from pictures");
   EXPECT_EQ(all.at(plain.id()).rank, 1) << "what has no rank influences none";
   Track track;
   track.names_read = true;

@@ -53,8 +53,8 @@ FabricatedRun& small(FabricatedRun& run) {
   lga.arms[2].unchanged = 3;
   run.add(lga);
   run.add(perturbed("gcbc_dart", 8, {{"segmentation", {8, 8, 8, 8}}, {"light_colour", {8, 6, 0, 0}}}));
-  for (const auto& [row, wins] : {std::pair("oracle", Wins{20, 20, 20, 20}), {"bound", {20, 20, 15, 9}}}) {
-    Spec reference = perturbed(row, 20, {{"segmentation", wins}, {"light_colour", {20, 20, 20, 20}}});
+  for (const auto& [row, wins] : {std::pair("oracle", Wins{20, 20, 15, 9}), {"random_object", {8, 8, 6, 3}}}) {
+    Spec reference = perturbed(row, wins.front(), {{"segmentation", wins}, {"light_colour", Wins(4, wins.front())}});
     reference.kind = "reference", reference.demonstrations = 0;
     run.add(reference);
   }
@@ -144,7 +144,7 @@ TEST(PerturbationCurves, CorrectOverAllLevelsOfAllAxesOfARow) {
   EXPECT_EQ(curve_of(summary, "lga", "segmentation")["tests"], 8);
   EXPECT_EQ(curve_of(summary, "lga", "segmentation")["first_loss"], 3) << "level 2 alone: p .125";
   EXPECT_EQ(curve_of(summary, "lga", "light_colour")["first_loss"], nullptr);
-  EXPECT_EQ(curve_of(summary, "bound", "segmentation")["levels"][0]["p_holm"], nullptr) << "a reference row";
+  EXPECT_EQ(curve_of(summary, "oracle", "segmentation")["levels"][0]["p_holm"], nullptr) << "a reference row";
 }
 
 TEST(PerturbationCurves, HaveTheAreaOfTrapezoidsRelativeToTheControl) {
@@ -156,7 +156,7 @@ TEST(PerturbationCurves, HaveTheAreaOfTrapezoidsRelativeToTheControl) {
   EXPECT_LT(area["low"], area["relative"]);
   EXPECT_GT(area["high"], area["relative"]);
   EXPECT_DOUBLE_EQ(curve_of(summary, "gcbc_dart", "segmentation")["area"]["relative"].get<double>(), 1);
-  EXPECT_EQ(curve_of(summary, "bound", "segmentation")["area"], nullptr);
+  EXPECT_EQ(curve_of(summary, "oracle", "segmentation")["area"], nullptr);
 
   FabricatedRun apart, never;
   Spec first_and_last = perturbed("lga", 16, {{"segmentation", {16, 0}}});
@@ -212,7 +212,7 @@ TEST(PerturbationSection, ShowsEveryLevelBesideTheControlAndNoMeanOverAxes) {
   std::vector<std::string> references;
   for (const document::Grid::Row& row : curves.rows)
     if (row.reference) references.push_back(row.cells[0].text() + " " + row.cells[1].text());
-  EXPECT_EQ(references, std::vector<std::string>{"bound segmentation"}) << "only where it is no bound of its control";
+  EXPECT_EQ(references, std::vector<std::string>{"oracle segmentation"}) << "only where it is no bound of its control";
 
   const document::Grid& areas = grid_named(report, "perturbations_areas_cells_mujoco_20");
   EXPECT_EQ(areas.heads.size(), 4u) << "method, control, and each axis";

@@ -133,7 +133,6 @@ TEST(Schemas, AcceptThePapersMethods) {
   EXPECT_EQ(complaints("paper_methods", document), Complaints());
   for (const auto& [where, value] : std::vector<std::pair<const char*, Json>>{{"/methods/0/mark", "star"},
                                                                               {"/methods/0/colour", "blue"},
-                                                                              {"/references/0/id", "lga"},
                                                                               {"/remarks/0/rows", Json::array()},
                                                                               {"/remarks/0/rows/0", Json::object()},
                                                                               {"/surprise", 1}}) {
