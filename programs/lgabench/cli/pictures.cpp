@@ -9,6 +9,7 @@
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cell/picture.hpp>
+#include <lgabench/cli/played_scenes.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/base64.hpp>
 #include <lgabench/core/environments.hpp>
@@ -18,8 +19,6 @@
 
 namespace lgabench::cli {
 namespace {
-
-using namespace worker;
 
 template <class ColourAt>
 std::string png(PictureSize size, ColourAt colour_at) {
