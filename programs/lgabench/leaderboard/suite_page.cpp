@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <set>
 
 #include <lgabench/core/rounding.hpp>
@@ -262,11 +261,6 @@ Grid heat_grid(const NamedTable& table, std::size_t first_row) {
 }
 
 }  // namespace
-
-std::string capital(std::string text) {
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text;
-}
 
 Grid grid_of(const NamedTable& table, const std::string& what, std::string caption) {
   Grid grid;

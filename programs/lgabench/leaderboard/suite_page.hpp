@@ -9,8 +9,11 @@
 #include <lgabench/leaderboard/labels.hpp>
 #include <lgabench/leaderboard/scenes.hpp>
 #include <lgabench/leaderboard/standings.hpp>
+#include <lgabench/statistics/names.hpp>
 
 namespace lgabench::leaderboard {
+
+using statistics::capital;
 
 /// A row of a ranking, with what it is called.
 struct NamedStanding : Standing {
@@ -59,8 +62,6 @@ document::Span by_span(const Entry& entry);
 document::Span id_span(const Entry& entry);
 /// Its commit or file, which leads to the repository where that has an address.
 document::Span source_span(const Entry& entry);
-/// With a capital.
-std::string capital(std::string text);
 /// "heart, 13 scenarios, ..." in a sentence.
 std::string what_was_played(const Setting& setting);
 /// "3", "–" where there is none.
