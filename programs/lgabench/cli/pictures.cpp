@@ -15,7 +15,6 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/job/job.hpp>
-#include <lgabench/worker/played_scenes.hpp>
 
 namespace lgabench::cli {
 namespace {

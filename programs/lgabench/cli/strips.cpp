@@ -8,7 +8,6 @@
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/job/job.hpp>
-#include <lgabench/worker/played_scenes.hpp>
 
 namespace lgabench::cli {
 namespace {
