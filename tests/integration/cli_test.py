@@ -162,7 +162,7 @@ class Mistakes(Case):
             (["leaderboard", "add", "x", "--documents", "y"], r"leaderboard add: --documents is an option of build, check$"),
             (["leaderboard", "check", "x"], r'leaderboard check: "x" is a word too many$'),
             (["leaderboard", "verify", "--fresh", "--cells", "3"], r"excludes"),
-            (["study", "report", "x", "--out", "y"], r"study report: --out is an option of serve, rehearse$"),
+            (["study", "report", "x", "--out", "y"], r"study report: --out is an option of serve$"),
             (["report", "nope"], r"^lgabench: nope: not the directory of a run \(no run.json\)$"),
         ]:
             with self.subTest(words):
