@@ -11,7 +11,8 @@ import unittest
 from case import BUILD, Case, FIXTURES, PROGRAM, command_line, some_of
 
 VERBS = ["list", "info", "select", "answers", "render", "demos", "run", "open", "report", "compare", "verify", "attribute", "merge", "cluster", "status",
-         "leaderboard", "new-plugin", "check-plugin", "commands", "study", "encoder", "cache"]
+         "leaderboard", "new-plugin", "check-plugin", "draw-commands", "study", "encoder", "cache", "help"]
+FIRST = ["list", "run", "open", "compare", "new-plugin", "check-plugin"]
 PLUGIN = ["--plugin-path", FIXTURES / "good"]
 # Cells without training, for milliseconds.
 RUN = ["run", "q1", "--scenarios", "heart", "--methods", "fixture_constant", *PLUGIN, "--demos", "10,20", "--seeds", "0:2",
@@ -23,11 +24,26 @@ class Help(Case):
     def test_bare_and_asked_for(self):
         said = self.call().stdout
         self.assertEqual(said, self.call("--help").stdout)
-        for verb in VERBS:
-            self.assertRegex(said, rf"\n  {verb} +\w")
-        self.assertNotIn("Other commands", said, "each command stands below a title of its own")
+        self.assertEqual(said, self.call("help").stdout)
+        self.assertEqual(re.findall(r"^  ([a-z][a-z-]*)  ", said, re.M), FIRST)
+        every = self.call("help", "all").stdout
+        self.assertEqual(every, self.call("--help-all").stdout)
+        verbs = re.findall(r"^  ([a-z][a-z-]*)  ", every, re.M)
+        self.assertLessEqual(set(VERBS), set(verbs))
+        self.assertIn(f"\n{len(verbs) - len(FIRST)} more commands: lgabench help all\n", said)
+        self.assertNotIn("Other commands", every, "each command stands below a title of its own")
         for word in ("LGABENCH_PLUGIN_PATH", "NO_COLOR", "Exit status", "130"):
-            self.assertIn(word, said)
+            self.assertIn(word, every)
+
+    def test_help_of_a_command_is_its_own(self):
+        for verb in ("run", "rescore", "help"):
+            self.assertEqual(self.call("help", verb).stdout, self.call(verb, "--help").stdout)
+        self.assertIn('unknown command "rnu" (did you mean "run"?)', self.call("help", "rnu", expect=2).stderr)
+
+    def test_an_old_name_works_and_says_the_new_one(self):
+        done = self.call("commands", "--seed", "7", "--n", "1", "--out", "drawn")
+        self.assertIn("lgabench commands is accepted for one more release; write lgabench draw-commands\n", done.stderr)
+        self.assertTrue((self.dir / "drawn/drawn_7.json").exists())
 
     def test_of_every_command_fits_and_names_what_is_taken(self):
         for verb in VERBS:
@@ -55,7 +71,7 @@ class Help(Case):
         self.assertIn("--methods", more)
 
     def test_lines_go_on_below_their_second_column(self):
-        said = self.call("--help").stdout
+        said = self.call("help", "all").stdout
         statuses = said.split("\nExit status\n")[1].split("\n\n")[0].splitlines()
         self.assertEqual([line for line in statuses if not re.match(r"  \d+ +\S|       \S", line)], [])
         early = [line for line, rest in zip(statuses, statuses[1:]) if rest.startswith("      ")
@@ -95,7 +111,7 @@ class Mistakes(Case):
             (["leaderboard"], r"^lgabench: ACTION is missing; usage: lgabench leaderboard \[OPTIONS\] ACTION \[WHAT\] \[LINE\]$"),
             (["run", "q1", "--set", "lga.network=plane", "--dry-run"], r'\(did you mean "plain"\?\), got "plane"'),
             (["merge"], r"OUT is missing; usage: lgabench merge \[OPTIONS\] OUT RUN\.\.\.$"),
-            (["compare", "a"], r"compare: expected A B, or A --rows ROW_A,ROW_B$"),
+            (["compare", "a"], r"compare: expected A B, or A with --rows or --difference$"),
             (["verify", "a", "b"], r'"b" is a word too many; usage: lgabench verify \[OPTIONS\] RUN$'),
             (["run", "q11"], r'no suite "q11" \(did you mean "q1"\?\)$'),
             (["run", "moon"], r'no suite "moon", expected one of: .*q1.*, or a \.json file$'),
@@ -121,7 +137,7 @@ class Mistakes(Case):
             (["run", "q1", "--axes", "camera_turn:1++4"], r'--axes: expected AXIS or .*; got "camera_turn:1\+\+4"$'),
             (["run", "q1", "--preset", "a", "--preset", "b"], r"^lgabench: --preset: expected it once, got it 2 times$"),
             (["rescore", "x", "--within", "1"], r"^lgabench: --within: expected 2 values, got 1$"),
-            (["commands", "--n", "5"], r"^lgabench: --seed is missing; usage: lgabench commands"),
+            (["draw-commands", "--n", "5"], r"^lgabench: --seed is missing; usage: lgabench draw-commands"),
             (["run", "q1", "--demos", "0"], r"^lgabench: demonstrations: expected 1 or more for lga, whose policy \(regression\) is "
                                             r"trained on them, got 0; policy=point needs none$"),
             (["run", "q1", "--methods", "selected_by:lga", "--demos", "0,5"], r"expected 1 or more for selected_by:lga, whose policy \(heat_map\)"),
@@ -132,7 +148,7 @@ class Mistakes(Case):
             (["run", "q1", "--scene-seed", "9223372036854775808"], r"^lgabench: --scene-seed: expected a whole number from .* to 9223372036854775807, got 9223372036854775808$"),
             (["run", "q1", "--scene-seed", "-1"], r"^lgabench: --scene-seed: expected a whole number from 0 to 9223372036854775807, got -1$"),
             *([[*words, "--seed", seed], rf"^lgabench: --seed: expected a whole number from 0 to 9223372036854775807, got {seed}$"]
-              for words in (["commands", "--out", "x"], ["demos", "heart", "--out", "x"], ["render", "heart"])
+              for words in (["draw-commands", "--out", "x"], ["demos", "heart", "--out", "x"], ["render", "heart"])
               for seed in ("-1", "9223372036854775808", "99999999999999999999999")),
             (["render", "nosuch"], r'no scenario "nosuch", expected one of \d+, such as: (\w+, ){7}\w+ \(lgabench list scenarios\)$'),
             (["new-suite", "mine", "--scenarios", "nosuch"], r'no scenario "nosuch", expected one of \d+, such as: '),
@@ -146,7 +162,7 @@ class Mistakes(Case):
             (["leaderboard", "add", "x", "--documents", "y"], r"leaderboard add: --documents is an option of build, check$"),
             (["leaderboard", "check", "x"], r'leaderboard check: "x" is a word too many$'),
             (["leaderboard", "verify", "--fresh", "--cells", "3"], r"excludes"),
-            (["study", "report", "x", "--out", "y"], r"study report: --out is an option of serve, rehearse$"),
+            (["study", "report", "x", "--out", "y"], r"study report: --out is an option of serve$"),
             (["report", "nope"], r"^lgabench: nope: not the directory of a run \(no run.json\)$"),
         ]:
             with self.subTest(words):
@@ -407,6 +423,7 @@ class Completion(Case):
         self.assertIn("mujoco" if (BUILD / "lib/lgabench/plugins/mujoco.so").exists() else "kinematic",
                       self.completed("demos", "heart", "--engine", ""))
         self.assertEqual(self.completed("info", "human"), ["human"])
+        self.assertEqual(self.completed("help", "a"), ["answers", "all", "attribute"])
         (self.dir / "runs").mkdir()
         self.assertEqual(self.completed("report", "ru"), ["runs"])
         for verb in VERBS:

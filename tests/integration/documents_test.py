@@ -103,7 +103,7 @@ class DocumentedCommands(Case):
                             (self.dir / f"{shown[1]}.json").unlink(missing_ok=True)
                         if verb == "new-suite":
                             shutil.rmtree(self.dir / shown[1], ignore_errors=True)
-                        if verb == "commands":
+                        if verb == "draw-commands":
                             shutil.rmtree(self.dir / words[words.index("--out") + 1], ignore_errors=True)
                         self.call(*words)
                         ran += 1

@@ -150,7 +150,7 @@ class Reader:
 
 class DrawnCommands(Case):
     def draw(self, out, *more):
-        self.call("commands", "--seed", "1", "--out", out, *more)
+        self.call("draw-commands", "--seed", "1", "--out", out, *more)
         suite = json.loads((self.dir / out / "drawn_1.json").read_text())
         return suite, {id: json.loads((self.dir / out / f"{id}.json").read_text()) for id in suite["scenarios"]}
 
@@ -183,7 +183,7 @@ class DrawnCommands(Case):
             self.assertEqual(file.read_bytes(), (self.dir / "again" / file.name).read_bytes(), file.name)
 
     def test_the_shipped_hundred_are_those_of_their_seed(self):
-        self.call("commands", "--seed", "2026", "--out", "out")
+        self.call("draw-commands", "--seed", "2026", "--out", "out")
         drawn, shipped = json.loads((self.dir / "out/drawn_2026.json").read_text()), json.loads((SHARE / "suites/drawn.json").read_text())
         for member in "scenarios", "groups":
             self.assertEqual(shipped[member], drawn[member])
@@ -225,15 +225,15 @@ class DrawnCommands(Case):
                 ("whose", "mine", "/names/0: unknown member \"whose\"")):
             with self.subTest(member=member, value=value):
                 (self.dir / "bad.json").write_text(json.dumps(dict(lexicon, names=[dict(apple, **{member: value}), *lexicon["names"][1:]])))
-                error = self.call("commands", "--seed", "1", "--lexicon", "bad.json", "--out", "out", expect=2).stderr
+                error = self.call("draw-commands", "--seed", "1", "--lexicon", "bad.json", "--out", "out", expect=2).stderr
                 self.assertRegex(error, r"^lgabench: .*bad\.json")
                 self.assertIn(said, error)
                 self.assertEqual(error.count("\n"), 1)
         (self.dir / "bad.json").write_text(json.dumps(dict(lexicon, looks=[x for x in lexicon["looks"] if "named" in x])))
-        error = self.call("commands", "--seed", "1", "--lexicon", "bad.json", "--out", "out", expect=2).stderr
+        error = self.call("draw-commands", "--seed", "1", "--lexicon", "bad.json", "--out", "out", expect=2).stderr
         self.assertIn("bad.json: /looks: expected some with \"named\": true, and some without", error)
         self.draw("full", "--n", "1")
-        self.assertIn("expected a new or an empty directory", self.call("commands", "--seed", "1", "--out", "full", expect=2).stderr)
+        self.assertIn("expected a new or an empty directory", self.call("draw-commands", "--seed", "1", "--out", "full", expect=2).stderr)
 
 
 if __name__ == "__main__":

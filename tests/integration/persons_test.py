@@ -146,7 +146,7 @@ class Persons(Case):
     def test_the_shipped_persons_are_those_of_their_seeds(self):
         for seed, count, *more in ((1, 25), (20261127, 200), (20261127, 200, "--hints")):
             out = f"{seed}{''.join(more)}"
-            self.call("commands", "--persons", str(count), "--seed", str(seed), *more, "--out", out)
+            self.call("draw-commands", "--persons", str(count), "--seed", str(seed), *more, "--out", out)
             files = list((self.dir / out).glob("persons_*_??.json"))
             self.assertEqual(len(files), count // 25)
             for file in files:

@@ -21,7 +21,7 @@ class ByPose(case.BesideOneRun):
 
     def rates(self, *judge):
         """(scenario, method) -> success."""
-        printed = self.call("report", "run", "--format", "csv", *judge).stdout
+        printed = self.call("rescore", "run", "--format", "csv", *judge).stdout
         return {(row["scenario"], row["method"]): float(row["success"]) for row in csv.DictReader(io.StringIO(printed))}
 
     def test_a_wider_tolerance_takes_more_and_the_oracle_always_succeeds(self):
@@ -46,15 +46,19 @@ class ByPose(case.BesideOneRun):
     def test_nothing_of_the_run_changes(self):
         self.call("report", "run")
         before = {path: path.read_bytes() for path in (self.dir / "run").rglob("*") if path.is_file()}
-        said = self.call("report", "run", "--judge", "pose").stdout
-        self.assertTrue(said.startswith("Success by pose: the action begins within 0.07 m and ends within 0.1 m"), said[:200])
+        said = self.call("rescore", "run", "--judge", "pose", "--format", "tables").stdout
+        self.assertTrue(said.startswith("Judged by pose: begins within 0.07 m of the oracle's action, ends within 0.1 m"), said[:200])
+        old = self.call("report", "run", "--judge", "pose")
+        self.assertEqual(old.stdout, said)
+        self.assertIn("report --judge pose is accepted for one more release; write lgabench rescore run --judge pose --format tables\n",
+                      old.stderr)
         after = {path: path.read_bytes() for path in (self.dir / "run").rglob("*") if path.is_file()}
         self.assertEqual(before, after)
 
     def test_what_cannot_be_judged_is_refused_in_a_line(self):
         self.call("run", "mobile", "--preset", "smoke", "--seeds", "0", "--demos", "1", "--episodes", "2", "--methods",
                   "lga+policy=centroid", "--no-reference", "--out", "mobile")
-        said = self.call("report", "mobile", "--judge", "pose", expect=2).stderr
+        said = self.call("rescore", "mobile", "--judge", "pose", expect=2).stderr
         self.assertIn("mobile does not compare actions by pose", said)
         self.assertIn("expected --judge pose", self.call("report", "run", "--within", "1,1", expect=2).stderr)
         self.assertIn("expected --format text, json or csv",

@@ -73,10 +73,9 @@ class Rescore(case.BesideOneRun):
         self.assertEqual(counts[-1], 0)
         self.assertIn("mobile does not compare actions by pose", self.call("rescore", "mobile", "--judge", "pose", expect=2).stderr)
 
-    def test_by_pose_it_says_what_report_says(self):
+    def test_its_lines_and_its_summary_agree(self):
         lines = self.rescored("run", "--judge", "pose", "--within", "0.05,0.06")
-        self.call("report", "run", "--judge", "pose", "--within", "0.05,0.06")
-        printed = json.loads(self.call("report", "run", "--judge", "pose", "--within", "0.05,0.06", "--format", "json").stdout)
+        printed = json.loads(self.call("rescore", "run", "--judge", "pose", "--within", "0.05,0.06", "--format", "json").stdout)
         rows = {(row["engine"], row["scenario"], row["method"]): row["success"] for row in printed["rows"]}
         cells = {key: cell for key, (cell, _) in self.cells("run").items()}
         for (engine, scenario, method), success in rows.items():
@@ -85,6 +84,10 @@ class Rescore(case.BesideOneRun):
             if some:  # no mean
                 self.assertAlmostEqual(sum(some) / len(some), success)
         self.assertTrue(all(line["distance_m"] < 1e-6 for line in lines.values() if line["row"] == "oracle"))
+
+    def test_the_protocols_judge_makes_the_reports_summary(self):
+        self.call("report", "run")
+        self.assertEqual(self.call("rescore", "run", "--format", "csv").stdout, (self.dir / "run/summary.csv").read_text())
 
     def test_the_table_has_the_means_of_the_lines(self):
         lines = self.rescored("run", "--position-tolerance", "0.03").values()
@@ -110,6 +113,9 @@ class Rescore(case.BesideOneRun):
             self.assertIn(why, line["problem"])
             self.assertIn(f"left out: {key}/test/{index}: ", self.said.stderr)
         self.assertIn("2 episodes could not be judged again and are left out", self.said.stderr)
+        refused = self.call("rescore", "run", "--format", "tables", expect=2)
+        self.assertIn("--format tables: expected that each episode can be judged again", refused.stderr)
+        self.assertEqual(refused.stdout, "")
         self.assertTrue(all("problem" not in line for at, line in lines.items() if at not in ((key, "test", 1), (key, "test", 2))))
 
     def test_what_is_wrong_is_said_in_a_line(self):

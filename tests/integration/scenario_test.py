@@ -256,12 +256,12 @@ class Printed(Case):
         self.assertEqual(arms, {"test": [1, 2], "near_miss": [4, 4]})
 
     def test_of_commands(self):
-        said = self.call("commands", "--seed", "3", "--n", "8", "--out", self.odd).stdout
+        said = self.call("draw-commands", "--seed", "3", "--n", "8", "--out", self.odd).stdout
         self.assertEqual(self.run_all(said), ["select", "run"])
-        said = self.call("commands", "--seed", "3", "--persons", "2", "--out", self.odd + "/people").stdout
+        said = self.call("draw-commands", "--seed", "3", "--persons", "2", "--out", self.odd + "/people").stdout
         self.assertEqual(self.run_all(said), ["run"])
         for words in ("--seed", "20261127", "--persons", "2"), ("--seed", "2026", "--n", "8"):
-            said = self.call("commands", *words, "--out", f"shipped {words[1]}").stdout
+            said = self.call("draw-commands", *words, "--out", f"shipped {words[1]}").stdout
             self.assertRegex(said, r"lgabench has these scenarios already, such as \w+: another --seed draws some that can be played\n$")
             self.assertEqual(self.run_all(said), [])
 
@@ -270,11 +270,8 @@ class Printed(Case):
         check, serve = re.findall(r"^  (lgabench study .*)$", said, re.M)
         self.shell(check, expect=2)  # blanks to fill in
         self.shell(f"timeout -s INT 5 {serve} --port 0", expect=124)  # it serves until it is stopped
-        rehearse, = re.findall(r"`(lgabench study rehearse [^`]*)`", (self.dir / self.odd / "README.md").read_text())
-        said = self.shell(re.sub(r"--people \d+", "--people 1", rehearse))
-        report, run = re.findall(r"^  (lgabench .*)$", said, re.M)
-        self.shell(report)
-        self.shell(run, "--methods", "human", "--dry-run")
+        report, = re.findall(r"`(lgabench study report [^`]*)`", (self.dir / self.odd / "README.md").read_text())
+        self.shell(report, expect=3)  # nobody took part
 
     def test_of_new_plugin(self):
         said = self.call("new-plugin", "none", "--kind", "python", "--directory", self.odd).stdout

@@ -8,7 +8,7 @@ import signal
 import subprocess
 import threading
 
-from case import Case, command_line
+from case import BUILD, Case, command_line
 
 SCALES = ("mental", "physical", "temporal", "performance", "effort", "frustration")
 # Two commands, one of them with a second set.
@@ -132,6 +132,12 @@ class StudyCase(Case):
         file.write_text(json.dumps(dict(json.loads(file.read_text()), **changes)))
         if pin:
             self.call("study", "check", "study", "--pin")
+
+    def rehearse(self, people):
+        """So many simulated people take part in ./study, whose answers lie in ./data."""
+        done = subprocess.run([BUILD / "bin/rehearse", "study/protocol.json", "data", str(people)], cwd=self.dir, env=self.environment,
+                              stderr=subprocess.PIPE, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def participants(self, data="data"):
         return sorted(path.name for path in (self.dir / data / "participants").glob("*.json"))

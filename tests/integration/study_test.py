@@ -377,7 +377,7 @@ class StudyFullDisk(StudyCase):
 class StudyRehearsal(StudyCase):
     def test_simulated_people_end_in_verdicts_that_say_so(self):
         self.new(pin=False)
-        self.call("study", "rehearse", "study/protocol.json", "--out", "data", "--people", "6")
+        self.rehearse(6)
         self.assertEqual(len(self.participants()), 6)
         said = self.call("study", "report", "data").stdout
         self.assertIn("rehearsal, not people", said)
@@ -414,7 +414,7 @@ class StudyRehearsal(StudyCase):
         near, either, first = "words_relation_cutlery_nearest_to_plate", "words_union_spoon_or_wooden_fork", "words_superlative_rainbow_order_mug"
         words = dict(SMALL, sets=[[{"scenario": name} for name in (near, either, first)]])
         self.new(pin=False, meanings=True, **words)
-        self.call("study", "rehearse", "study/protocol.json", "--out", "data", "--people", "2")
+        self.rehearse(2)
         self.assertEqual(len(self.participants()), 2)
         for name in self.participants():
             answers = {a["scenario"]: a for a in json.loads((self.dir / "data/participants" / name).read_text())["answers"]}
@@ -445,7 +445,7 @@ class StudyRehearsal(StudyCase):
 
     def test_a_crossover_of_eighteen(self):
         self.new("crossover", pin=False)
-        self.call("study", "rehearse", "study", "--out", "data", "--people", "18")
+        self.rehearse(18)
         said = self.call("study", "report", "data").stdout
         self.assertIn("condition: Human / LGA-HILL", said)
         results = json.loads((self.dir / "data/results.json").read_text())
@@ -466,8 +466,7 @@ class StudyRehearsal(StudyCase):
         said = self.call("study", "check", "study").stdout
         self.assertIn(f"{len(disputed)} disputed pairs and {len(pairs) - len(disputed)} controls", said)
         self.assertRegex(said, r"power: .* needs \d+ people")
-        said = self.call("study", "rehearse", "study", "--out", "data", "--people", "20").stdout
-        self.assertNotIn("--humans", said)
+        self.rehearse(20)
         report = self.call("study", "report", "data").stdout
         self.assertIn("rehearsal, not people", report)
         self.assertRegex(report, r"20 people settle \d+ of %d disputed pairs .*alpha" % len(disputed))

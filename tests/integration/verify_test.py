@@ -245,12 +245,18 @@ class Compare(Case):
         claims = json.loads(self.call("report", "a", "--claims", "--format", "json", expect=1).stdout)["claims"]
         self.assertEqual([claim["verdict"] for claim in claims], ["reversed"] + 4 * ["not tested"])
         self.call("report", "a")
-        said = self.call("report", "a", "--difference", "gcbc_dart,lga").stdout
+        done = self.call("compare", "a", "--difference", "gcbc_dart,lga")
+        said = done.stdout
+        old = self.call("report", "a", "--difference", "gcbc_dart,lga")
+        self.assertEqual(old.stdout, said)
+        self.assertEqual(old.stderr, "lgabench: report --difference is accepted for one more release; write lgabench compare a "
+                                     "--difference gcbc_dart,lga\n" + done.stderr)
         self.assertRegex(said, r"Two rows, paired\n(.*\n)+.*test +10 +GCBC-DART − LGA +\+1.00 \[.* held ")
-        self.call("report", "a", "--difference", "lga,gcbc_dart", expect=1)
+        self.call("compare", "a", "--difference", "lga,gcbc_dart", expect=1)
+        self.assertIn("expected one run", self.call("compare", "a", "b", "--difference", "lga,gcbc_dart", expect=2).stderr)
         self.assertIn("excludes", self.call("report", "a", "--claims", "--difference", "gcbc_dart,lga", expect=2).stderr)
         self.assertIn("no row nobody, the run has: gcbc_dart, lga",
-                      self.call("report", "a", "--difference", "lga,nobody", expect=2).stderr)
+                      self.call("compare", "a", "--difference", "lga,nobody", expect=2).stderr)
 
 
 if __name__ == "__main__":

@@ -279,8 +279,8 @@ std::string run_hash(const std::vector<Cell>& cells, const Catalogue& catalogue)
   return sha256(all).substr(0, 8);
 }
 
-// By its bytes: an id can be anybody's.
-static bool is_shipped(const PluginInfo& plugin, const Catalogue& catalogue) {
+// An id can be anybody's.
+static bool has_shipped_bytes(const PluginInfo& plugin, const Catalogue& catalogue) {
   const fs::path shipped = fs::weakly_canonical(shipped_plugin_directory());
   return std::any_of(catalogue.plugins.begin(), catalogue.plugins.end(), [&](const PluginInfo& one) {
     return one.sha256 == plugin.sha256 && fs::weakly_canonical(one.file).parent_path() == shipped;
@@ -294,7 +294,7 @@ static const PluginInfo* trained_plugin(const Cell& cell, const Catalogue& catal
 
 bool is_strangers(const Cell& cell, const Catalogue& catalogue) {
   const PluginInfo* const method = trained_plugin(cell, catalogue);
-  return method && !is_shipped(*method, catalogue);
+  return method && !has_shipped_bytes(*method, catalogue);
 }
 
 bool has_own_arithmetic(const Cell& cell, const Catalogue& catalogue) {
@@ -303,13 +303,13 @@ bool has_own_arithmetic(const Cell& cell, const Catalogue& catalogue) {
   if (const PluginInfo* method = trained_plugin(cell, catalogue)) plugins.push_back(*method);
   if (const PluginInfo* perceiver = perceiver_plugin(cell, catalogue)) plugins.push_back(*perceiver);
   return std::all_of(plugins.begin(), plugins.end(), [&](const PluginInfo& plugin) {
-    return is_shipped(plugin, catalogue) && plugin.fingerprint.find("LibTorch=none") != std::string::npos;
+    return has_shipped_bytes(plugin, catalogue) && plugin.fingerprint.find("LibTorch=none") != std::string::npos;
   });
 }
 
 bool takes_unknown_time(const Cell& cell, const Catalogue& catalogue) {
   const PluginInfo* const method = method_plugin(cell, catalogue);
-  return is_strangers(cell, catalogue) || (method && !is_shipped(*method, catalogue));
+  return is_strangers(cell, catalogue) || (method && !has_shipped_bytes(*method, catalogue));
 }
 
 std::string TimeSpent::text(int jobs) const {

@@ -123,20 +123,6 @@ static void fields(PictureRequest& request, Fields& field) {
   field("ends", request.ends, may_lack());
 }
 
-static void fields(OracleRequest& request, Fields& field) {
-  field("cell", request.cell);
-  field("arm", request.arm);
-  field("index", request.index);
-  field("scene", request.scene);
-}
-
-static void fields(OracleActions& answer, Fields& field) {
-  if (field.reading() ? field.reading()->has("problem") : !answer.problem.empty())
-    field("problem", answer.problem);
-  else
-    field("actions", answer.actions);
-}
-
 Limits read_limits(const JsonReader& job) { return value_of<Limits>(job.at("limits"), false); }
 
 Json to_json(const CellJob& job) { return json_of(job); }
@@ -150,12 +136,6 @@ AskJob read_ask_job(const JsonReader& reader) { return value_of<AskJob>(reader, 
 
 Json to_json(const PictureRequest& request) { return json_of(request); }
 PictureRequest read_picture_request(const JsonReader& reader) { return value_of<PictureRequest>(reader, false); }
-
-Json to_json(const OracleRequest& request) { return json_of(request); }
-OracleRequest read_oracle_request(const JsonReader& reader) { return value_of<OracleRequest>(reader, false); }
-
-Json to_json(const OracleActions& answer) { return json_of(answer); }
-OracleActions read_oracle_actions(const JsonReader& reader) { return value_of<OracleActions>(reader, false); }
 
 Json to_json(const PhaseCount& message) { return {{"phase", message.phase}, {"count", message.count}}; }
 

@@ -91,27 +91,6 @@ Json to_json(const PictureRequest& request);
 /// @throws InputError
 PictureRequest read_picture_request(const JsonReader& reader);
 
-/// A scene that lgabench-worker answers with OracleActions: it is told a list of them, and answers with a
-/// line of JSON each.
-struct OracleRequest {
-  std::filesystem::path cell;  // a cell.json
-  std::string arm;
-  int index = 0;
-  std::string scene;  // its hash, as in episodes.jsonl
-};
-Json to_json(const OracleRequest& request);
-/// @throws InputError
-OracleRequest read_oracle_request(const JsonReader& reader);
-
-/// What the oracle would do in a scene, for each object that is right; or why that is not known.
-struct OracleActions {
-  std::vector<Action> actions;
-  std::string problem;
-};
-Json to_json(const OracleActions& actions);
-/// @throws InputError
-OracleActions read_oracle_actions(const JsonReader& reader);
-
 /// lgabench-worker ask: what methods of a run will ask a server's model (LGABENCH_QUESTIONNAIRE), beforehand.
 struct AskJob {
   std::string model;  // to_text() of an AskedModel

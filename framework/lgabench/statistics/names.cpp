@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <string_view>
 #include <tuple>
 
@@ -119,6 +120,11 @@ std::string readable(const std::string& text) {
     at = end;
   }
   return out;
+}
+
+std::string capital(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
 }
 
 int display_rank(const std::string& method) {

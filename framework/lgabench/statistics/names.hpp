@@ -17,6 +17,9 @@ std::string display_name(const std::string& method);
 /// map", other "_" and "=" inside an id -> spaces. What is quoted, and names of files and options, stay.
 std::string readable(const std::string& text);
 
+/// The text with a capital first.
+std::string capital(std::string text);
+
 /// Position in tables, by id: first the paper's methods in its order, then others (by name), then reference rows.
 int display_rank(const std::string& method);
 

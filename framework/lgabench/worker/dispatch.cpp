@@ -16,7 +16,6 @@ constexpr std::array own_verbs{
     Verb{"cell", "Compute the cell described as JSON on stdin; progress on descriptor 3", cell},
     Verb{"check-job", "Check the plugin described as JSON on stdin", check_job},
     Verb{"ask", "Ask a server the questions described as JSON on stdin", ask},
-    Verb{"oracle", "Tell the oracle's actions in the scenes listed as JSON on stdin, a line of JSON each", oracle},
     Verb{"act", "Act with a kept policy (a job on stdin)", act},
 };
 

@@ -6,7 +6,6 @@ namespace lgabench::worker {
 void cell();
 void check_job();
 void ask();
-void oracle();
 void act();
 
 }  // namespace lgabench::worker

@@ -10,7 +10,13 @@ namespace lgabench::cli {
 
 inline constexpr const char* about = "A benchmark of state abstraction in imitation learning";
 
-/// Those that need an engine and are lgabench-worker's, with what they do.
+/// The commands that --help shows; `help all` shows every command.
+inline constexpr std::array first_commands{"list", "run", "open", "compare", "new-plugin", "check-plugin"};
+
+/// Environment variables and exit statuses, as `help all` and the man page say them.
+extern const char* const reference;
+
+/// The verbs of lgabench-worker that a person calls, which need an engine, with what they do.
 inline constexpr std::array<std::pair<const char*, const char*>, 6> worker_verbs{{
     {"select", "Ask which features matter for a command, and print the Selection"},
     {"demos", "Write the oracle's demonstrations of a scenario as robomimic HDF5"},

@@ -75,12 +75,16 @@ std::string explained(const CLI::App& app, const CLI::ParseError& e) {
 
 }  // namespace
 
-int dispatch(CLI::App& app, int argc, char** argv, const int& exit) {
+void say_renamed(const std::string& old, const std::string& now) {
+  to_stderr("lgabench: {} is accepted for one more release; write {}\n", old, now);
+}
+
+int dispatch(CLI::App& app, const std::vector<std::string>& words, const int& exit) {
   ::signal(SIGXFSZ, SIG_IGN);  // a file over the limit (ulimit -f) is an error, not the end
   try {
     try {
-      expect_no_gaps(app, {argv + 1, argv + argc});
-      app.parse(argc, argv);
+      expect_no_gaps(app, words);
+      app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // the order that CLI11 wants
       if (app.get_subcommands().empty()) throw CLI::CallForHelp();
     } catch (const CLI::CallForVersion& e) {
       to_stdout("{}\n", e.what());

@@ -1,4 +1,4 @@
-// lgabench commands: as many commands as asked for, drawn from a grammar and a lexicon, as scenarios and a suite.
+// lgabench draw-commands: as many commands as asked for, drawn from a grammar and a lexicon, as scenarios and a suite.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -81,7 +81,7 @@ void draw(const DrawArguments& a) {
 
 void add_drawn_commands(CLI::App& app, int& exit) {
   auto a = std::make_shared<DrawArguments>();
-  Verb verb(app, "commands", "Draw new commands with their meanings and scenes, as a suite");
+  Verb verb(app, "draw-commands", "Draw new commands with their meanings and scenes, as a suite");
   verb.option("--seed SEED", a->request.seed, "Seed of the draw; the same seed gives the same commands", required,
               a_seed());
   verb.option("--n N", a->request.commands, "Number of commands, from eight families in turn", CLI::Range(1, 100000),
@@ -99,7 +99,7 @@ void add_drawn_commands(CLI::App& app, int& exit) {
   verb.option("--out DIR", a->out, "The directory for the scenarios and their suite, drawn_SEED.json", required);
   verb->footer(
       "docs/own-scenarios.md says what is drawn, docs/formats/lexicon.schema.json how a lexicon is written.\n"
-      "Example: lgabench commands --seed 7 --n 100 --out drawn");
+      "Example: lgabench draw-commands --seed 7 --n 100 --out drawn");
   verb->callback([a, &exit] {
     draw(*a);
     exit = ok;

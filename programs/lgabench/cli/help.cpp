@@ -63,32 +63,45 @@ std::string named(const OptionHelp& option) {
 class HelpFormatter : public CLI::FormatterBase {
  public:
   explicit HelpFormatter(std::set<std::string> rare) : rare_(std::move(rare)) {}
+  HelpFormatter(std::set<std::string> first, std::string reference)
+      : first_(std::move(first)), reference_(std::move(reference)) {}
 
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
     std::string help = wrapped(app->get_description(), 0) + "\n\nUsage: " + usage_line(*app, name) + "\n";
-    const std::string footer = app->get_footer().empty() ? "" : "\n" + wrapped(app->get_footer(), 2) + "\n";
-    const bool is_command = app->get_parent() != nullptr;
+    const bool is_command = app->get_parent() != nullptr, all = mode == CLI::AppFormatMode::All;
+    const std::string footer = paragraph(app->get_footer());
     if (is_command) help += footer;
-    for (const auto& [title, commands] : command_groups(*app)) {
-      help += "\n" + title + "\n";
-      for (const CLI::App* command : commands) help += entry(command->get_name(), command->get_description());
-    }
     std::size_t more = 0;
+    for (const auto& [title, commands] : command_groups(*app)) {
+      std::string entries;
+      for (const CLI::App* command : commands)
+        if (all || first_.empty() || first_.count(command->get_name()) > 0)
+          entries += entry(command->get_name(), command->get_description());
+        else
+          ++more;
+      if (!entries.empty()) help += "\n" + title + "\n" + entries;
+    }
+    if (more > 0) help += fmt::format("\n{} more commands: {} help all\n", more, name);
+    more = 0;
     for (const auto& [title, options] : option_groups(*app)) {
       std::string entries;
       for (const OptionHelp& option : options)
-        if (mode != CLI::AppFormatMode::All && !option.names.empty() && rare_.count(option.names.back()) > 0)
+        if (!all && !option.names.empty() && rare_.count(option.names.back()) > 0)
           ++more;
         else
           entries += entry(named(option), option.text);
       if (!entries.empty()) help += "\n" + (title.empty() ? "" : title + "\n") + entries;
     }
     if (more > 0) help += fmt::format("\n{} more options: {} --help-all\n", more, name);
-    return is_command ? help : help + footer;
+    if (is_command) return help;
+    return help + (all ? paragraph(reference_) : "") + footer;
   }
 
  private:
-  const std::set<std::string> rare_;
+  static std::string paragraph(const std::string& text) { return text.empty() ? "" : "\n" + wrapped(text, 2) + "\n"; }
+
+  const std::set<std::string> rare_{}, first_{};
+  const std::string reference_{};
 };
 
 }  // namespace
@@ -217,8 +230,8 @@ std::string wrapped(std::string_view text, std::size_t indent) {
   }
 }
 
-std::shared_ptr<CLI::FormatterBase> help_formatter() {
-  return std::make_shared<HelpFormatter>(std::set<std::string>());
+std::shared_ptr<CLI::FormatterBase> help_formatter(std::set<std::string> first, std::string reference) {
+  return std::make_shared<HelpFormatter>(std::move(first), std::move(reference));
 }
 
 }  // namespace lgabench::cli

@@ -108,7 +108,8 @@ std::string usage_line(const CLI::App& app, const std::string& name);
 /// line's second column.
 std::string wrapped(std::string_view text, std::size_t indent);
 
-/// What writes --help of an app and of the commands that are added to it later.
-std::shared_ptr<CLI::FormatterBase> help_formatter();
+/// What writes --help of an app and of the commands that are added to it later. With `first`, the app's own --help
+/// shows these commands alone; --help-all shows every command, and the `reference`.
+std::shared_ptr<CLI::FormatterBase> help_formatter(std::set<std::string> first = {}, std::string reference = "");
 
 }  // namespace lgabench::cli

@@ -12,6 +12,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/core/shipped.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/suite.hpp>
 #include <lgabench/host/python_method.hpp>
@@ -196,8 +197,7 @@ void info(const std::string& name, bool json, const std::vector<fs::path>& direc
   for (const std::string& environment : environment_ids()) known.push_back(environment);
   for (const Json& row : reference_rows()) known.push_back(row.at("id"));
   for (const PerturbationAxis& axis : perturbation_axes()) known.push_back(axis.id);
-  std::error_code none_to_list;
-  for (const std::string& suite : json_names(data_directory() / "suites", none_to_list)) known.push_back(suite);
+  for (const std::string& suite : shipped_names("suites")) known.push_back(suite);
   throw InputError(fmt::format(
       "no method, engine, perturbation, suite, scenario or environment \"{}\"{}; lgabench list shows them, those of "
       "other plugins with "

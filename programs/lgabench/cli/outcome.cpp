@@ -7,6 +7,7 @@
 
 #include <lgabench/cli/help.hpp>
 #include <lgabench/core/colour.hpp>
+#include <lgabench/core/exit_status.hpp>
 #include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
@@ -14,6 +15,8 @@
 #include <lgabench/record/layout.hpp>
 
 namespace lgabench::cli {
+
+using namespace exit_status;
 
 Words command_line() {
   const std::string bytes = read_file("/proc/self/cmdline");
@@ -73,6 +76,38 @@ void print_painted(const std::string& unpainted) {
 
 void print_tables(const report::Report& report) {
   print_painted(document::terminal(report.document, report.run.directory));
+}
+
+void print_claims_section(const std::vector<statistics::Claim>& claims, const std::string& title) {
+  to_stdout("{}\n\n{}", title, document::terminal(report::claims_section(claims, statistics::MethodStyles(), title)));
+}
+
+int exit_of(const statistics::RunResults& results, int otherwise) {
+  name_other_version(results);
+  for (const std::string& why : results.unreadable) to_stderr("left out: {}\n", why);
+  if (results.not_run > 0) to_stderr("{} cells of the run have not been played: not final\n", results.not_run);
+  if (!results.unreadable.empty()) return usage;
+  const bool none_finished =
+      std::all_of(results.cells.begin(), results.cells.end(), [](const auto& cell) { return cell.failed; });
+  if (none_finished)
+    to_stderr("{}: all its {} cells failed: nothing was measured\n", results.directory.string(), results.cells.size());
+  return none_finished ? cells_failed : otherwise;
+}
+
+int verdict_of(const statistics::RunResults& results, const std::vector<statistics::Claim>& claims) {
+  if (results.record.smoke) to_stderr("Smoke or limited run: not for the leaderboard.\n");
+  const bool reversed = std::any_of(claims.begin(), claims.end(),
+                                    [](const auto& c) { return c.verdict == statistics::Verdict::reversed; });
+  return exit_of(results, reversed ? regression : ok);
+}
+
+int print_difference(const statistics::RunResults& run, const std::vector<std::string>& rows, bool json) {
+  const std::vector<statistics::Claim> claims = statistics::test_difference(run, rows.at(0), rows.at(1));
+  if (json)
+    to_stdout("{}\n", statistics::to_json(run.suite, claims).dump(2));
+  else
+    print_claims_section(claims, "Two rows, paired");
+  return verdict_of(run, claims);
 }
 
 void print_report(const fs::path& run, Printed what) {

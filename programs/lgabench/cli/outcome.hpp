@@ -31,6 +31,19 @@ void print_tables(const report::Report& report);
 /// summary.json.
 enum class Printed { end, table, tables, json };
 
+/// The claims below a title.
+void print_claims_section(const std::vector<statistics::Claim>& claims, const std::string& title);
+
+/// Names on stderr the cells that could not be read or were not played. @returns the exit status of a command that
+/// prints the other cells' numbers: `otherwise`, unless a cell cannot be read or none finished
+int exit_of(const statistics::RunResults& results, int otherwise);
+
+/// The exit status where claims are tested: `regression` if one is reversed.
+int verdict_of(const statistics::RunResults& results, const std::vector<statistics::Claim>& claims);
+
+/// Tests rows[0] against rows[1] and prints that; @returns the exit status
+int print_difference(const statistics::RunResults& run, const std::vector<std::string>& rows, bool json);
+
 /// Writes the run's report, and prints it. Notes of the table alone go to stderr.
 void print_report(const fs::path& run, Printed what);
 

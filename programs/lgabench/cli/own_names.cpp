@@ -9,6 +9,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario_files.hpp>
 #include <lgabench/core/shell.hpp>
+#include <lgabench/core/shipped.hpp>
 
 namespace lgabench::cli {
 
@@ -30,8 +31,7 @@ void expect_free_scenario(std::string_view verb, const std::string& id) {
 }
 
 void expect_free_suite(std::string_view verb, const std::string& id) {
-  std::error_code none_to_list;
-  if (contains(json_names(data_directory() / "suites", none_to_list), id))
+  if (contains(shipped_names("suites"), id))
     throw InputError(
         fmt::format("{}: expected another id than {}, which a shipped suite has; nothing was written", verb, id));
 }

@@ -1,4 +1,4 @@
-// Names of what the commands new-... and `commands` write, so that what they print works as it is.
+// Names of what the commands new-... and draw-commands write, so that what they print works as it is.
 #pragma once
 #include <filesystem>
 #include <string>

@@ -5,6 +5,7 @@
 #include <functional>
 #include <string_view>
 
+#include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/help.hpp>
 #include <lgabench/core/version.hpp>
 
@@ -66,30 +67,36 @@ std::string roff_footer(const std::string& text, const char* heading) {
 // --- completion ---
 
 // How a completion names the kinds of values that it knows: shell functions print the words of each.
-constexpr const char* word_functions =
-    "# Prints what a value may be, a word a line: as `lgabench list` has them, or one of A|B|C. $2: the command's "
-    "first\n"
-    "# word, a suite or scenario that may take some of them alone.\n"
-    "_lgabench_words() {\n"
-    "  case $1 in\n"
-    "    *'|'*) printf '%s\\n' \"$1\" | tr '|' '\\n' ;;\n"
-    "    METHOD*) _lgabench_list methods ;;\n"
-    "    ENGINE*) _lgabench_list engines ;;\n"
-    "    SUITE) _lgabench_list suites ;;\n"
-    "    SCENARIO* | COMMAND) _lgabench_list scenarios --of \"$2\" || _lgabench_list scenarios ;;\n"
-    "    NAME) local kind; for kind in methods rows engines perturbations environments suites scenarios; do "
-    "_lgabench_list $kind; "
-    "done ;;\n"
-    "    LAYOUT*) _lgabench_list layouts --of \"$2\" || _lgabench_list layouts ;;\n"
-    "    SOURCE) _lgabench_list sources --of \"$2\" || _lgabench_list sources ;;\n"
-    "    KIND) _lgabench_list kinds ;;\n"
-    "    AXIS) _lgabench_list axes ;;\n"
-    "    AXIS,...) _lgabench_list perturbations --of \"$2\" || _lgabench_list perturbations ;;\n"
-    "    ARM,...) _lgabench_list arms --of \"$2\" ;;\n"
-    "    PRESET) _lgabench_list presets --of \"$2\" || _lgabench_list presets ;;\n"
-    "  esac\n"
-    "}\n"
-    "_lgabench_list() { lgabench list \"$@\" 2>/dev/null; }\n";
+std::string word_functions(const CLI::App& app) {
+  std::string commands = "all";
+  each_command(app, [&commands](const CLI::App& command) { commands += " " + command.get_name(); });
+  return replaced(
+      "# Prints what a value may be, a word a line: as `lgabench list` has them, or one of A|B|C. $2: the command's "
+      "first\n"
+      "# word, a suite or scenario that may take some of them alone.\n"
+      "_lgabench_words() {\n"
+      "  case $1 in\n"
+      "    *'|'*) printf '%s\\n' \"$1\" | tr '|' '\\n' ;;\n"
+      "    METHOD*) _lgabench_list methods ;;\n"
+      "    ENGINE*) _lgabench_list engines ;;\n"
+      "    SUITE) _lgabench_list suites ;;\n"
+      "    SCENARIO* | COMMAND) _lgabench_list scenarios --of \"$2\" || _lgabench_list scenarios ;;\n"
+      "    NAME) local kind; for kind in methods rows engines perturbations environments suites scenarios; do "
+      "_lgabench_list $kind; "
+      "done ;;\n"
+      "    LAYOUT*) _lgabench_list layouts --of \"$2\" || _lgabench_list layouts ;;\n"
+      "    SOURCE) _lgabench_list sources --of \"$2\" || _lgabench_list sources ;;\n"
+      "    KIND) _lgabench_list kinds ;;\n"
+      "    AXIS) _lgabench_list axes ;;\n"
+      "    AXIS,...) _lgabench_list perturbations --of \"$2\" || _lgabench_list perturbations ;;\n"
+      "    ARM,...) _lgabench_list arms --of \"$2\" ;;\n"
+      "    TOPIC) printf '%s\\n' COMMANDS ;;\n"
+      "    PRESET) _lgabench_list presets --of \"$2\" || _lgabench_list presets ;;\n"
+      "  esac\n"
+      "}\n"
+      "_lgabench_list() { lgabench list \"$@\" 2>/dev/null; }\n",
+      "COMMANDS", commands);
+}
 
 std::string bash_quoted(const std::string& text) { return "'" + replaced(text, "'", "'\\''") + "'"; }
 
@@ -132,7 +139,7 @@ std::string man_page(const CLI::App& app) {
     page += roff_options(command);
     if (!command.get_footer().empty()) page += roff_footer(command.get_footer(), "");
   });
-  return page + roff_footer(app.get_footer(), "SH");
+  return page + roff_footer(reference + std::string("\n\n") + app.get_footer(), "SH");
 }
 
 std::string bash_completion(const CLI::App& app) {
@@ -157,7 +164,7 @@ std::string bash_completion(const CLI::App& app) {
              "_lgabench_options() {{\n  case $1 in\n{}  esac\n}}\n"
              "# What an option of a command takes, or the command itself by position.\n"
              "_lgabench_takes() {{\n  case \"$1 $2\" in\n{}  esac\n}}\n",
-             word_functions, options, takes) +
+             word_functions(app), options, takes) +
          "_lgabench() {\n"
          "  local now=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]} takes=\n"
          "  COMPREPLY=()\n"
@@ -213,7 +220,7 @@ std::string zsh_completion(const CLI::App& app) {
       "  shift words\n  ((CURRENT--))\n"
       "  case $words[1] in\n{}  esac\n}}\n"
       "_lgabench \"$@\"\n",
-      word_functions, commands, replaced(cases, " \\\n        ;;", "\n      ;;"));
+      word_functions(app), commands, replaced(cases, " \\\n        ;;", "\n      ;;"));
 }
 
 std::string fish_completion(const CLI::App& app) {
@@ -248,7 +255,7 @@ std::string fish_completion(const CLI::App& app) {
          "function _lgabench_words\n"
          "  set -l before (string match -r '.*,' -- (commandline -ct))\n"
          "  set -l script " +
-         quoted(std::string(word_functions) + "_lgabench_words \"$@\"") +
+         quoted(word_functions(app) + "_lgabench_words \"$@\"") +
          "\n"
          "  for word in (bash -c $script bash $argv[1] (_lgabench_word 3) 2>/dev/null)\n"
          "    string match -q -- '*,...' $argv[1]; and echo \"$before$word\"; or echo $word\n"

@@ -9,17 +9,15 @@
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cell/picture.hpp>
+#include <lgabench/cli/played_scenes.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/base64.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/job/job.hpp>
-#include <lgabench/worker/played_scenes.hpp>
 
 namespace lgabench::cli {
 namespace {
-
-using namespace worker;
 
 template <class ColourAt>
 std::string png(PictureSize size, ColourAt colour_at) {

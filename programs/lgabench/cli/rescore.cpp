@@ -7,32 +7,61 @@
 #include <optional>
 
 #include <lgabench/cli/commands.hpp>
+#include <lgabench/cli/outcome.hpp>
+#include <lgabench/cli/played_scenes.hpp>
 #include <lgabench/core/environments.hpp>
+#include <lgabench/core/error.hpp>
+#include <lgabench/core/geometry.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/counted_progress.hpp>
 #include <lgabench/record/layout.hpp>
-#include <lgabench/statistics/pose.hpp>
-#include <lgabench/worker/played_scenes.hpp>
+#include <lgabench/report/report.hpp>
 
 namespace lgabench::cli {
 namespace {
 
-using namespace worker;
+// How far an action may lie from the oracle's. The paper counts "the correct action on the target object within radius
+// ε of the goal" (section 5) and does not give ε.
+struct PoseTolerance {
+  double begin_m = .07, end_m = .10;  // grasp and place; a sweep's beginning and end
+  double turn_deg = 15;               // where the task asks for a turn
+};
+
+bool is_within(const ActionDistance& distance, const PoseTolerance& tolerance) {
+  return distance.begin_m <= tolerance.begin_m && distance.end_m <= tolerance.end_m &&
+         distance.turn_rad <= tolerance.turn_deg * pi / 180;
+}
+
+// The environment's task. @throws InputError where the environment does not compare actions by pose (mobile)
+const TaskInfo& task_judged_by_pose(const std::string& environment, const std::string& task) {
+  const EnvironmentType& type = find_environment(environment);
+  const TaskInfo& of = find_task(type, task);
+  const Action any(type.action_space().size(), 1);
+  if (!type.distance(of, any, any))
+    throw InputError(fmt::format("--judge pose: {} does not compare actions by pose", environment));
+  return of;
+}
 
 struct RescoreArguments {
   fs::path run, json;
-  std::string judge = "physics";
+  std::string judge = "physics", format = "rows";
   JudgeLimits limits;
-  statistics::PoseTolerance within;
+  PoseTolerance within;
   std::vector<fs::path> plugin_path;
 };
 
+constexpr const char* far_from_oracle = "far_from_oracle";
+
 // An episode that was judged again; without `problem` that is what it is.
 struct Rescored {
-  bool success = false;
+  Failure failure{};
   std::optional<double> distance_m{};
   std::string problem{};
+
+  bool success() const { return failure == failure::none; }
 };
+
+Rescored not_judged(std::string why) { return {{}, {}, std::move(why)}; }
 
 // Plays the recorded action once more. What then does not end as recorded is judged by nobody: another build or
 // processor plays it.
@@ -40,39 +69,40 @@ Rescored by_physics(Environment& environment, const Scene& scene, const Episode&
   environment.reset(scene);
   const StepResult end = environment.step(episode.action);
   if (end.failure != episode.failure)
-    return {false, {}, fmt::format("ends as {} here, recorded as {}", end.failure, episode.failure)};
+    return not_judged(fmt::format("ends as {} here, recorded as {}", end.failure, episode.failure));
   const Rejudged again = environment.judged_again(limits);
-  return {again.failure == failure::none, again.distance_m};
+  return {again.failure, again.distance_m};
 }
 
 // The farther of an action's two ends from the oracle's, of the target for which that is least.
 Rescored by_pose(Environment& environment, const Scene& scene, const Scenario& scenario, const Episode& episode,
-                 const statistics::PoseTolerance& within) {
+                 const PoseTolerance& within) {
   const EnvironmentType& type = find_environment(scenario.environment);
-  const TaskInfo& task = statistics::task_judged_by_pose(scenario.environment, scenario.task);
+  const TaskInfo& task = task_judged_by_pose(scenario.environment, scenario.task);
   environment.reset(scene);
-  Rescored rescored;
+  bool near = false;
+  std::optional<double> distance_m;
   for (const SceneObject& object : scene.objects) {
     if (object.role != role::target) continue;
     const auto off = type.distance(task, episode.action, environment.expert_action_for(object.instance_id));
     const double farther_m = std::max(off->begin_m, off->end_m);
-    if (!rescored.distance_m || farther_m < *rescored.distance_m) rescored.distance_m = farther_m;
-    rescored.success = rescored.success || statistics::is_within(*off, within);
+    if (!distance_m || farther_m < *distance_m) distance_m = farther_m;
+    near = near || is_within(*off, within);
   }
-  return rescored;
+  return {near ? failure::none : episode.success() ? far_from_oracle : episode.failure, distance_m};
 }
 
 Rescored rescored(const RescoreArguments& a, PlayedScenes& scenes, const PlayedScenes::Played& cell,
                   const Episode& episode) {
-  if (episode.action.empty()) return {};  // nothing was done, which no limit makes a success
+  if (episode.action.empty()) return {episode.failure};  // nothing was done, which no limit makes a success
   try {
     const Scene scene = PlayedScenes::scene(cell, episode.arm, episode.index, episode.scene);
     Environment* const environment = scenes.on(cell.cell.engine, cell.scenario);
-    if (!environment) return {false, {}, "the run's engine is not installed: " + cell.cell.engine};
+    if (!environment) return not_judged("the run's engine is not installed: " + cell.cell.engine);
     return a.judge == "pose" ? by_pose(*environment, scene, cell.scenario, episode, a.within)
                              : by_physics(*environment, scene, episode, a.limits);
   } catch (const Error& e) {
-    return {false, {}, one_line(e.what())};
+    return not_judged(one_line(e.what()));
   }
 }
 
@@ -83,7 +113,7 @@ struct Mean {
   void add(const Episode& episode, const Rescored& again) {
     ++episodes;
     recorded += episode.success();
-    rescored += again.success;
+    rescored += again.success();
     if (!again.distance_m) return;
     ++distances;
     distance_m += *again.distance_m;
@@ -96,20 +126,24 @@ struct ByRow {
   Mean mean{};
 };
 
-void print(const RescoreArguments& a, const std::vector<ByRow>& rows) {
+void print_judge(const RescoreArguments& a) {
   const auto limit = [](const std::optional<double>& given, const char* unit) {
     return given ? fmt::format("{:g} {}", *given, unit) : std::string("the protocol's");
   };
   if (a.judge == "pose")
     to_stdout(
-        "Judged by pose: begins within {:g} m of the oracle's action, ends within {:g} m, turns within {:g} degrees\n",
+        "Judged by pose: begins within {:g} m of the oracle's action, ends within {:g} m, turns within {:g} "
+        "degrees\n\n",
         a.within.begin_m, a.within.end_m, a.within.turn_deg);
   else
-    to_stdout("Judged by physics: position {}, angle {}\n", limit(a.limits.position_m, "m"),
+    to_stdout("Judged by physics: position {}, angle {}\n\n", limit(a.limits.position_m, "m"),
               limit(a.limits.angle_deg, "degrees"));
+}
+
+void print_rows(const std::vector<ByRow>& rows) {
   std::size_t row = 3, arm = 3;
   for (const ByRow& one : rows) row = std::max(row, one.row.size()), arm = std::max(arm, one.arm.size());
-  to_stdout("\n{:<{}}  {:<{}}  demos  episodes  recorded  rescored  distance\n", "row", row, "arm", arm);
+  to_stdout("{:<{}}  {:<{}}  demos  episodes  recorded  rescored  distance\n", "row", row, "arm", arm);
   for (const auto& [name, of_arm, demonstrations, mean] : rows) {
     const double count = std::max(1, mean.episodes);
     to_stdout("{:<{}}  {:<{}}  {:5}  {:8}  {:8.3f}  {:8.3f}  {}\n", name, row, of_arm, arm, demonstrations,
@@ -125,7 +159,7 @@ Json line_of(const statistics::CellResult& cell, const Episode& episode, const R
             {"arm", episode.arm},
             {"index", episode.index},
             {"success", episode.success()},
-            {"rescored", again.problem.empty() ? Json(again.success) : Json()},
+            {"rescored", again.problem.empty() ? Json(again.success()) : Json()},
             {"distance_m", again.distance_m ? Json(*again.distance_m) : Json()}};
   if (!again.problem.empty()) line["problem"] = again.problem;
   return line;
@@ -141,40 +175,64 @@ bool name_lacking(const statistics::RunResults& run) {
   return failed + run.unreadable.size() > 0 || run.not_run > 0;
 }
 
+// The run's numbers as this judge has them. @pre each episode was judged
+void print_report_of(const RescoreArguments& a, statistics::RunResults run) {
+  const report::Report report = report::unwritten_report(std::move(run));
+  if (a.format == "json") {
+    to_stdout("{}\n", canonical(statistics::to_json(report.summary)));
+  } else if (a.format == "csv") {
+    to_stdout("{}", report::to_csv(report.summary));
+  } else {
+    print_judge(a);
+    print_tables(report);
+  }
+}
+
 int rescore(const RescoreArguments& a) {
-  const statistics::RunResults run = statistics::read_run(a.run);
+  statistics::RunResults run = statistics::read_run(a.run);
   PlayedScenes scenes(a.plugin_path);
   std::vector<ByRow> rows;
   std::string lines;
   constexpr int most_named = 10;
   int left_out = 0;
   CountedProgress progress("cells judged:", static_cast<int>(run.cells.size()));
-  for (const statistics::CellResult& cell : run.cells) {
+  for (statistics::CellResult& cell : run.cells) {
     progress.tell_next();
     if (cell.failed) continue;
     const PlayedScenes::Played& played = scenes.cell((a.run / "cells" / cell.key / cell_file::configuration).string());
-    if (a.judge == "pose") statistics::task_judged_by_pose(played.scenario.environment, played.scenario.task);
+    if (a.judge == "pose") task_judged_by_pose(played.scenario.environment, played.scenario.task);
     for (const std::string& arm : cell.arms) {
       const auto is_row = [&](const ByRow& one) {
         return one.row == cell.method && one.arm == arm && one.demonstrations == cell.demonstrations;
       };
       auto row = std::find_if(rows.begin(), rows.end(), is_row);
       if (row == rows.end()) row = rows.insert(rows.end(), {cell.method, arm, cell.demonstrations});
-      for (const Episode& episode : cell.episodes.at(arm)) {
+      for (Episode& episode : cell.episodes.at(arm)) {
         const Rescored again = rescored(a, scenes, played, episode);
         if (!a.json.empty()) lines += canonical(line_of(cell, episode, again)) + "\n";
-        if (again.problem.empty())
-          row->mean.add(episode, again);
-        else if (++left_out <= most_named)
-          to_stderr("left out: {}/{}/{}: {}\n", cell.key, arm, episode.index, again.problem);
+        if (!again.problem.empty()) {
+          if (++left_out <= most_named)
+            to_stderr("left out: {}/{}/{}: {}\n", cell.key, arm, episode.index, again.problem);
+          continue;
+        }
+        row->mean.add(episode, again);
+        episode.failure = again.failure;
+        if (again.success()) episode.attribution.clear();
       }
     }
   }
   progress.end();
-  print(a, rows);
   if (!a.json.empty()) write_file(a.json, lines);
   const bool lacks = name_lacking(run);
   if (left_out) to_stderr("{} episodes could not be judged again and are left out\n", left_out);
+  if (a.format == "rows") {
+    print_judge(a);
+    print_rows(rows);
+  } else if (left_out) {
+    throw InputError(fmt::format("--format {}: expected that each episode can be judged again", a.format));
+  } else {
+    print_report_of(a, std::move(run));
+  }
   return left_out || lacks ? cells_failed : ok;
 }
 
@@ -204,6 +262,11 @@ void add_rescore(CLI::App& app, int& exit) {
       verb.option("--within BEGIN,END", tolerate,
                   "pose: how many metres apart the two actions may begin and end (default: 0.07,0.10)", within(0, 10))
           ->expected(2);
+  verb.option(
+      "--format rows|tables|json|csv", a->format,
+      "rows: success as recorded beside the other judge's; tables, json, csv: the report's, with intervals, as the "
+      "other judge has them",
+      one_of("format", {"rows", "tables", "json", "csv"}), with_default);
   verb.option("--json FILE", a->json, "Also write a line of JSON for each episode (docs/formats)");
   add_plugin_path(verb, a->plugin_path);
   verb->footer(
@@ -211,7 +274,8 @@ void add_rescore(CLI::App& app, int& exit) {
       "Without tolerances, physics gives the recorded verdicts. Episodes that do not end here as recorded, or whose "
       "scene cannot be made again, are named and left out, as are cells that failed, are damaged or were not played; "
       "the exit status is then 3.\n"
-      "Example: lgabench rescore runs/q1 --position-tolerance 0.05 --json rescored.jsonl");
+      "Example: lgabench rescore runs/q1 --position-tolerance 0.05 --json rescored.jsonl\n"
+      "         lgabench rescore runs/q1 --judge pose --within 0.10,0.10 --format tables");
   verb->callback([a, position, poses, &exit] {
     const bool by_pose = a->judge == "pose";
     if (by_pose && position->count() > 0) throw InputError("--position-tolerance: expected --judge physics");

@@ -2,17 +2,15 @@
 #include <vector>
 
 #include <lgabench/cell/picture.hpp>
+#include <lgabench/cli/played_scenes.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/job/job.hpp>
-#include <lgabench/worker/played_scenes.hpp>
 
 namespace lgabench::cli {
 namespace {
-
-using namespace worker;
 
 constexpr Rgb black{0, 0, 0}, white{255, 255, 255}, yellow{255, 225, 0};
 

@@ -7,7 +7,6 @@
 #include <memory>
 #include <optional>
 #include <random>
-#include <thread>
 
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/own_names.hpp>
@@ -20,7 +19,6 @@
 #include <lgabench/http/page_server.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/study/pair_study.hpp>
-#include <lgabench/study/rehearse.hpp>
 #include <lgabench/study/report.hpp>
 #include <lgabench/study/server.hpp>
 
@@ -31,7 +29,7 @@ struct StudyArguments {
   std::string what, host, invitation, protocol = "paper";
   fs::path path, out;
   std::string bind = "127.0.0.1";
-  int port = 8000, people = 1, begins = 30;
+  int port = 8000, begins = 30;
   bool pin = false, rehearsal = false, behind_tls_proxy = false;
 };
 
@@ -54,7 +52,6 @@ int new_study(const StudyArguments& a) {
   const std::string protocol = filled(read_file(shipped), drawn);
   const Json json = parse_json(protocol, shipped.string());
   const std::vector<std::pair<std::string, std::string>> values{{"@DIR@", path_word(a.path)},
-                                                                {"@PEOPLE@", json.at("planned_people").dump()},
                                                                 {"@MINUTES@", json.at("minutes").dump()}};
   write_file(a.path / "protocol.json", protocol);
   write_file(a.path / "consent.txt", read_file(templates / "consent.txt.in"));
@@ -123,27 +120,6 @@ int serve(const StudyArguments& a) {
   return ok;
 }
 
-int rehearse(const StudyArguments& a) {
-  const fs::path file = protocol_file(a.path);
-  ::umask(077);
-  study::Study study(a.out, study::read_protocol(file), file, study::Kind::rehearsal);
-  study::Server server(study, study::load_site(study.protocol()), {});
-  std::thread serving = start_thread([&server] { server.run(); });
-  std::exception_ptr failure;
-  try {
-    for (int i = 0; i < a.people; ++i) study::simulate_person(study.protocol(), server.port(), study.slots());
-  } catch (...) {
-    failure = std::current_exception();
-  }
-  server.stop();
-  serving.join();
-  if (failure) std::rethrow_exception(failure);
-  to_stdout("{} simulated people took part. The results:\n  lgabench study report {}\n", a.people, path_word(a.out));
-  if (!study.protocol().of_pairs())
-    to_stdout("  lgabench run q1 --humans {} --rehearsal\n", path_word(a.out / "participants"));
-  return ok;
-}
-
 int report_study(const StudyArguments& a) {
   const study::Report report = study::write_report(a.path);
   to_stdout("{}", document::terminal(report.document, a.path));
@@ -155,11 +131,9 @@ int report_study(const StudyArguments& a) {
 }
 
 int carry_out(const StudyArguments& a) {
-  if (a.out.empty() && (a.what == "serve" || a.what == "rehearse"))
-    throw InputError(fmt::format("study {}: expected --out DIR", a.what));
+  if (a.out.empty() && a.what == "serve") throw InputError(fmt::format("study {}: expected --out DIR", a.what));
   if (a.what == "new") return new_study(a);
   if (a.what == "check") return check(a);
-  if (a.what == "rehearse") return rehearse(a);
   if (a.what == "report") return report_study(a);
   return serve(a);
 }
@@ -168,15 +142,15 @@ int carry_out(const StudyArguments& a) {
 
 void add_study(CLI::App& app, int& exit) {
   auto a = std::make_shared<StudyArguments>();
-  const std::vector<std::string> actions{"new", "check", "serve", "rehearse", "report"};
+  const std::vector<std::string> actions{"new", "check", "serve", "report"};
   Verb verb(app, "study", "Run a user study in a browser, for the rows Human and LGA-HILL");
-  verb.option("what new|check|serve|rehearse|report", a->what,
+  verb.option("what new|check|serve|report", a->what,
               "new: write a protocol into DIR, for you to fill in; check: say what is missing; serve: serve the "
-              "pages of DIR's protocol; rehearse: let simulated people take part; report: show the results",
+              "pages of DIR's protocol; report: show the results",
               required, one_of("action", actions));
   verb.option("path DIR", a->path, "The study's directory or its protocol; for report, the directory that serve wrote",
               required);
-  verb.option("--out DIR", a->out, "serve, rehearse: where to store answers; a study already there is continued");
+  verb.option("--out DIR", a->out, "serve: where to store answers; a study already there is continued");
   verb.below("The protocol");
   verb.option("--protocol paper|crossover|disputed", a->protocol,
               "new: paper: the paper's study; crossover: nobody sees a command twice; disputed: people say whether "
@@ -198,9 +172,6 @@ void add_study(CLI::App& app, int& exit) {
               with_default);
   verb.option("--rehearsal", a->rehearsal,
               "serve: try the study out, without a pin; its answers are marked, and no tool takes them for people's");
-  verb.below("Simulated people");
-  verb.option("--people N", a->people, "rehearse: how many simulated people take part", CLI::Range(1, 10000),
-              with_default);
   verb->footer(
       "docs/study.md explains every step up to the first participant.\nExample: lgabench study new my_study\n         "
       "lgabench study serve my_study/protocol.json --out my_study/data");

@@ -177,7 +177,15 @@ inline void add_scenario_path(Verb& verb) {
   verb.option("--scenario-path DIR", add, "Also look for scenarios (.json files) here; can be repeated", repeatable);
 }
 
-/// Parses, runs the verb's callback, turns typed errors into one line on stderr and an exit status.
-int dispatch(CLI::App& app, int argc, char** argv, const int& exit);
+/// Says on stderr what to write in place of words of an earlier release, which still work.
+void say_renamed(const std::string& old, const std::string& now);
+
+/// Becomes lgabench-worker with these words; the first is a verb of worker_verbs. @returns an exit status where that
+/// program cannot be started
+int hand_to_worker(std::vector<std::string> words);
+
+/// Parses the words behind the program, runs the verb's callback, turns typed errors into one line on stderr and an
+/// exit status.
+int dispatch(CLI::App& app, const std::vector<std::string>& words, const int& exit);
 
 }  // namespace lgabench::cli

@@ -1,5 +1,7 @@
 #include <lgabench/cli/programs.hpp>
 
+#include <algorithm>
+
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/flush_denormals.hpp>
@@ -27,7 +29,7 @@ int worker_with_programs(int argc, char** argv) {
   add_check_scenario(app, exit);
   add_replay(app, exit);
   add_rescore(app, exit);
-  return dispatch(app, argc, argv, exit);
+  return dispatch(app, {argv + std::min(argc, 1), argv + argc}, exit);
 }
 
 }  // namespace lgabench::cli

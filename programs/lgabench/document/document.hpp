@@ -125,6 +125,7 @@ struct Block {
   Media in = reading;
   std::variant<Heading, Paragraph, List, Facts, Grid, Charts, PictureRow> content;
   std::string folded{};  // not empty: the page shows this line, and the rest on a click
+  std::string lead{};    // what Markdown says above it, where a page has the caption or `folded`
 };
 
 struct Section {
@@ -133,11 +134,22 @@ struct Section {
   std::vector<Block> blocks{};
 
   template <typename Content>
-  void add(Media media, Content content, std::string folded = "") {
+  void add(Media media, Content content, std::string folded = "", std::string lead = "") {
     Block& block = blocks.emplace_back();
     block.in = media;
     block.content.emplace<Content>(std::move(content));
     block.folded = std::move(folded);
+    block.lead = std::move(lead);
+  }
+  /// The section in few words, which stand alone where there is little room.
+  template <typename Content>
+  void add_brief(Content content) {
+    add(in_terminal, std::move(content));
+  }
+  /// What only a page has room for.
+  template <typename Content>
+  void add_detail(Content content, std::string folded = "") {
+    add(on_page, std::move(content), std::move(folded));
   }
 };
 

@@ -63,7 +63,9 @@ std::string markdown_block(const Block& block) {
   if (const auto* grid = std::get_if<Grid>(&block.content)) text = grid_text(*grid);
   if (const auto* charts = std::get_if<Charts>(&block.content))
     for (const Chart& chart : charts->charts)
-      text += fmt::format("{}![{}](figures/{}.svg)\n", text.empty() ? "" : "\n", plain(chart.alternative), chart.file);
+      if (!chart.file.empty())
+        text +=
+            fmt::format("{}![{}](figures/{}.svg)\n", text.empty() ? "" : "\n", plain(chart.alternative), chart.file);
   return text;
 }
 
@@ -72,7 +74,8 @@ std::string markdown_block(const Block& block) {
 std::string markdown(const Section& section) {
   std::string text;
   for (const Block& block : section.blocks)
-    if ((block.in & in_markdown) != 0) text += '\n' + markdown_block(block);
+    if (const std::string words = markdown_block(block); (block.in & in_markdown) != 0 && !words.empty())
+      text += (block.lead.empty() ? "" : '\n' + plain(block.lead) + '\n') + '\n' + words;
   return text;
 }
 
@@ -91,8 +94,8 @@ std::string markdown(const Document& document) {
       text +=
           fmt::format("> {}{}  \n", plain(note.text), note.log.empty() ? "" : fmt::format(" ({})", plain(note.log)));
   for (const Section& section : document.sections) {
-    if ((section.in & in_markdown) == 0) continue;
-    text += fmt::format("\n## {}\n", plain(section.title)) + markdown(section);
+    if (const std::string words = markdown(section); (section.in & in_markdown) != 0 && !words.empty())
+      text += fmt::format("\n## {}\n", plain(section.title)) + words;
   }
   return text;
 }

@@ -162,8 +162,9 @@ bool is_attributed(const CellResult& result) {
                      [&](const auto& arm) { return std::any_of(arm.second.begin(), arm.second.end(), told); });
 }
 
-// By id and version, as another build's bytes differ: a plugin of that id beside the installation's is never loaded.
-bool is_shipped(const std::string& id, const std::string& version, const Catalogue& shipped) {
+// A record's plugin goes by id and version, since another build's bytes differ: beside the installation's plugin none
+// of that id is ever loaded.
+bool is_shipped_version(const std::string& id, const std::string& version, const Catalogue& shipped) {
   return std::any_of(shipped.plugins.begin(), shipped.plugins.end(), [&](const PluginInfo& one) {
     return one.kind == "method" && one.id == id && one.version == version;
   });
@@ -187,8 +188,8 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Catalogu
     reasons.add(first.method.name + ": " + refusal);
   entry.identity.preset_sha256 = hash(installed.setting);
   entry.identity.scene_seed = installed.setting.scene_seed;
-  const bool may_be_told =
-      first.method.is_reference() || is_shipped(first.method.id, version_of(run, "method", first.method.id), shipped);
+  const bool may_be_told = first.method.is_reference() ||
+                           is_shipped_version(first.method.id, version_of(run, "method", first.method.id), shipped);
   Json data = Json::object();
   const std::vector<Cell> cells = cells_of_row(installed, first.method, first.engine, first.answers, conditions);
   std::vector<std::string> missing;

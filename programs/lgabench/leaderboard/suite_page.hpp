@@ -9,8 +9,11 @@
 #include <lgabench/leaderboard/labels.hpp>
 #include <lgabench/leaderboard/scenes.hpp>
 #include <lgabench/leaderboard/standings.hpp>
+#include <lgabench/statistics/names.hpp>
 
 namespace lgabench::leaderboard {
+
+using statistics::capital;
 
 /// A row of a ranking, with what it is called.
 struct NamedStanding : Standing {

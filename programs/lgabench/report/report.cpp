@@ -10,20 +10,19 @@
 namespace lgabench::report {
 namespace {
 
-RunResults read_cells(const fs::path& run) {
-  RunResults results = read_run(run);
-  if (results.cells.empty())
-    throw InputError(results.unreadable.empty()
-                         ? (run / "cells").string() + ": no cell of the run has been played yet: nothing to report"
-                         : results.unreadable.front());
-  return results;
+void expect_cells(const RunResults& run) {
+  if (run.cells.empty())
+    throw InputError(run.unreadable.empty() ? (run.directory / "cells").string() +
+                                                  ": no cell of the run has been played yet: nothing to report"
+                                            : run.unreadable.front());
 }
 
 }  // namespace
 
 Report write_report(const fs::path& run) {
   Report report;
-  report.run = read_cells(run);
+  report.run = read_run(run);
+  expect_cells(report.run);
   report.agreements = engine_agreement(report.run);
   auto drawing =                                              // by another process
       std::async(std::launch::async | std::launch::deferred,  // here, where no thread can be started
@@ -47,10 +46,10 @@ Report write_report(const fs::path& run) {
   return report;
 }
 
-Report report_by_pose(const fs::path& run, const PoseTolerance& tolerance) {
+Report unwritten_report(RunResults run) {
+  expect_cells(run);
   Report report;
-  report.run = read_cells(run);
-  judge_by_pose(report.run, tolerance);
+  report.run = std::move(run);
   report.summary = summarize(report.run);
   report.claims = test_claims(report.run);
   const PaperValues paper = paper_values(report.summary.suite);

@@ -6,7 +6,6 @@
 #include <lgabench/report/headline.hpp>
 #include <lgabench/report/report_document.hpp>
 #include <lgabench/statistics/compare.hpp>
-#include <lgabench/statistics/pose.hpp>
 
 namespace lgabench::report {
 using namespace document;
@@ -32,9 +31,9 @@ struct Report {
 /// @throws InputError naming the file and the line for a run that cannot be read or written.
 Report write_report(const fs::path& run);
 
-/// The report that write_report() would write were episodes judged by pose. Writes nothing, and has no pictures.
-/// @throws as read_run() and judge_by_pose().
-Report report_by_pose(const fs::path& run, const PoseTolerance& tolerance);
+/// The report that write_report() would write of these results. Writes nothing, and has no pictures.
+/// @throws InputError where no cell was played
+Report unwritten_report(RunResults run);
 
 /// summary.csv, and episodes.csv: a line for each episode of the run (docs/formats).
 std::string to_csv(const Summary& summary);

@@ -180,8 +180,8 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
       if (claim.differences[d].these.change) tested.push_back(all.back());
     }
   }
-  section.add(in_terminal, std::move(lines));
-  if (!all.empty()) section.add(in_terminal, details(styles, about, all));
+  section.add_brief(std::move(lines));
+  if (!all.empty()) section.add_brief(details(styles, about, all));
   if (!verdicts.rows.empty()) section.add(reading, std::move(verdicts));
   const bool folds = !tested.empty() || untested.rows.size() > 1;
   const std::string caption = untested.caption;
@@ -200,8 +200,7 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
   section.add(reading, details(styles, about, tested));
   Grid scenarios = by_scenario(styles, about, tested);
   if (scenarios.rows.empty()) return section;
-  section.add(in_markdown, Paragraph{{"The same by scenario:"}});
-  section.add(reading, std::move(scenarios), "The same by scenario");
+  section.add(reading, std::move(scenarios), "The same by scenario", "The same by scenario:");
   return section;
 }
 

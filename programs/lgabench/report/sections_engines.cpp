@@ -72,8 +72,8 @@ Section engines(const Material& material) {
                  "engine showed."}});
   for (std::size_t i = 0; i < material.agreements.size(); ++i) {
     const EngineAgreement& a = material.agreements[i];
-    section.add(in_markdown, Paragraph{{fmt::format("{} and {}, layout {}", a.first, a.second, a.layout)}});
-    section.add(everywhere, agreement_grid(material, a, fmt::format("/engine_agreement/{}", i)));
+    section.add(everywhere, agreement_grid(material, a, fmt::format("/engine_agreement/{}", i)), "",
+                fmt::format("{} and {}, layout {}", a.first, a.second, a.layout));
     if (a.disagreements.empty()) continue;
     Grid where;
     where.name = fmt::format("disagreements_{}_{}_{}", slug(a.layout), slug(a.first), slug(a.second));
@@ -83,7 +83,7 @@ Section engines(const Material& material) {
     for (const Disagreement& d : a.disagreements)
       where.rows.push_back({{}, {place_text(d), ending(d.episode().failure), ending(d.failure_second)}});
     section.add(reading, std::move(where), "Each of them");
-    for (const Disagreement& d : a.disagreements) section.add(on_page, pictures_of(material, a, d));
+    for (const Disagreement& d : a.disagreements) section.add(reading, pictures_of(material, a, d));
   }
   return section;
 }

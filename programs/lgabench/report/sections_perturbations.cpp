@@ -136,7 +136,7 @@ bool gives_other_commands(const std::vector<Part>& all) {
 
 // Tables.
 
-// `by_row`: grouped by the row, which a narrow terminal needs; else by the part, the row's name in a column.
+// `by_row`: grouped by the row, which few columns need; else by the part, the row's name in a column.
 Grid curves_grid(const Material& material, const std::vector<Part>& all, bool by_row) {
   std::set<int> levels;
   for (const Part& part : all)
@@ -303,25 +303,24 @@ Section perturbations(const Material& material) {
     if (all.size() > 1) section.add(reading, Heading{part.title()});
     section.add(reading, perturbation_charts(material, part));
   }
-  section.add(in_terminal, curves_grid(material, all, true));
-  section.add(in_terminal, Paragraph{{fmt::format("* beyond chance, after Holm’s correction over the {} levels of all "
-                                                  "axes of a row.",
-                                                  tests)}});
+  section.add_brief(curves_grid(material, all, true));
+  section.add_brief(
+      Paragraph{{fmt::format("* beyond chance, after Holm’s correction over the {} levels of all "
+                             "axes of a row.",
+                             tests)}});
   if (const std::string plugins = plugins_text(material.run); !plugins.empty()) {
-    section.add(in_terminal, Paragraph{{plugins}});
-    section.add(reading, Paragraph{{plugins}});
+    section.add(everywhere, Paragraph{{plugins}});
   }
   section.add(reading, curves_grid(material, all, false));
   for (const Part& part : with_areas) {
     Grid areas = areas_grid(material, part);
-    section.add(in_markdown, Paragraph{{areas.caption + ":"}});
-    section.add(reading, std::move(areas));
+    const std::string lead = areas.caption + ":";
+    section.add(reading, std::move(areas), "", lead);
   }
-  section.add(in_markdown, Paragraph{{"Each level against the control:"}});
-  section.add(reading, levels_grid(material, all), "Each level against the control");
+  section.add(reading, levels_grid(material, all), "Each level against the control", "Each level against the control:");
   for (const std::string& axis : all.front().axes())
     if (PictureRow row = perturbation_pictures(material, axis); !row.pictures.empty())
-      section.add(on_page, std::move(row));
+      section.add(reading, std::move(row));
   return section;
 }
 

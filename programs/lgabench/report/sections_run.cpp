@@ -33,7 +33,7 @@ Section what_was_run(const Material& material) {
     for (const auto& item : cell.episodes) episodes += item.second.size();
   const std::pair<std::string, std::string> cells{
       "cells", fmt::format("{} finished, {} failed, {} not run", run.cells.size() - failed, failed, run.not_run)};
-  section.add(on_page, Facts{{cells, {"episodes", std::to_string(episodes)}}});
+  section.add_detail(Facts{{cells, {"episodes", std::to_string(episodes)}}});
   Facts known = facts(run);
   known.items.insert(known.items.begin(), cells);
   section.add(in_markdown, std::move(known));
@@ -78,8 +78,7 @@ Section times(const Material& material) {
     for (const double s : one.mean_s) row.cells.emplace_back(Span::number(fixed(s)));
     grid.rows.push_back(std::move(row));
   }
-  section.add(in_markdown, Paragraph{{"Mean seconds of each phase."}});
-  section.add(reading, std::move(grid), "Mean seconds of each phase");
+  section.add(reading, std::move(grid), "Mean seconds of each phase", "Mean seconds of each phase.");
   return section;
 }
 
@@ -107,13 +106,13 @@ Section failed_cells(const Material& material) {
                      cell.demonstrations, cell.training_seed, cell.fault, cell.reason)});
   }
   section.add(reading, std::move(grid));
-  section.add(in_terminal, std::move(lines));
+  section.add_brief(std::move(lines));
   return section;
 }
 
 Section provenance(const Material& material) {
   const RunResults& run = material.run;
-  Section section{"provenance", "Provenance and machine", on_page};
+  Section section{"provenance", "Provenance and machine"};
   Facts all = facts(run);
   for (const RunRecord::Plugin& plugin : run.record.plugins)
     all.items.emplace_back("plugin " + plugin.id,
@@ -121,7 +120,7 @@ Section provenance(const Material& material) {
   for (const auto& [name, value] : run.record.build.items())
     if (value.is_string())
       all.items.emplace_back("built file", fmt::format("{}, sha256 {:.16}", name, value.get<std::string>()));
-  section.add(on_page, std::move(all), "Command, versions, checksums, machine");
+  section.add_detail(std::move(all), "Command, versions, checksums, machine");
   return section;
 }
 

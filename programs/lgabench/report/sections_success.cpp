@@ -116,7 +116,7 @@ Grid success_grid(const Material& material, const Table& table, const std::vecto
 }
 
 // Without the rows that have no value.
-Grid told(Grid grid) {
+Grid without_empty_rows(Grid grid) {
   const auto says_nothing = [](const TableCell& cell) { return cell.spans.empty() || cell.text() == "–"; };
   grid.rows.erase(std::remove_if(grid.rows.begin(), grid.rows.end(),
                                  [&](const Grid::Row& row) {
@@ -233,12 +233,16 @@ void add_view(const Material& material, const Table& table, const statistics::Vi
   const std::vector<std::string> all = table.scenarios(), each(all.begin(), all.end() - 1);
   const std::string field = fmt::format("{}, {}", material.summary.suite, table.title()),
                     columns = arms ? view.corner : "columns: number of demonstrations";
-  const auto add = [&](Media media, Grid grid, const char* file, const std::string& caption,
-                       const std::string& folded = "") {
-    if (media != in_terminal) grid.name = name + "_" + file;
+  const auto add = [&](Grid grid, const char* file, const std::string& caption, const std::string& folded = "",
+                       const std::string& lead = "") {
+    grid.name = name + "_" + file;
     grid.caption = caption;
-    if (media == in_terminal) grid.heads.front() = view.corner;
-    section.add(media, std::move(grid), folded);
+    section.add(reading, std::move(grid), folded, lead);
+  };
+  const auto add_brief = [&](Grid grid, const std::string& caption) {
+    grid.caption = field + caption;
+    grid.heads.front() = view.corner;
+    section.add_brief(std::move(grid));
   };
   const auto own = [&](TableCell (*cell_of)(const Row*), const std::vector<Column>& shown,
                        const std::vector<std::string>& scenarios,
@@ -251,44 +255,40 @@ void add_view(const Material& material, const Table& table, const statistics::Vi
       Paragraph{{fmt::format("Columns: {}. Brackets: 95 % interval over test scenes and training seeds of these "
                              "scenarios.",
                              arms ? "arms of the test" : "number of demonstrations")}});
-  add(reading, success_grid(material, table, plain, {mean_scenario}), "mean",
+  add(success_grid(material, table, plain, {mean_scenario}), "mean",
       fmt::format("Success, {}, {}; {}", table.title(mean_scenario), table.title(), columns));
-  add(in_terminal, own(success_cell, plain, all, true), "",
-      field + ": success [95 % interval over test scenes and training seeds]");
-  section.add(in_markdown, Paragraph{{"Each scenario:"}});
+  add_brief(own(success_cell, plain, all, true), ": success [95 % interval over test scenes and training seeds]");
   if (Charts small = scenario_charts(material, table, each); first && !small.charts.empty())
-    section.add(on_page, std::move(small));
-  add(reading, success_grid(material, table, view.columns, each), "scenarios",
-      fmt::format("Success in each scenario, {}; {}", table.title(), columns), "Each scenario, as a table");
+    section.add(reading, std::move(small));
+  add(success_grid(material, table, view.columns, each), "scenarios",
+      fmt::format("Success in each scenario, {}; {}", table.title(), columns), "Each scenario, as a table",
+      "Each scenario:");
+  const std::string control = table.arm_title(table.arms.front());
   if (!view.shifted.empty()) {
-    const std::string control = table.arm_title(table.arms.front());
-    section.add(in_markdown, Paragraph{{fmt::format("Change against {}, scene by scene:", control)}});
-    add(reading, told(own(shift_cell, view.shifted, all, false)), "change",
+    add(without_empty_rows(own(shift_cell, view.shifted, all, false)), "change",
         fmt::format("Change against {}, scene by scene, {}; {}", control, table.title(), columns),
-        "Change against " + control);
+        "Change against " + control, fmt::format("Change against {}, scene by scene:", control));
     if (!shifted.empty())
-      add(in_terminal, told(own(shift_cell, shifted, all, true)), "",
-          fmt::format("{}: change against {} [95 % interval]", field, control));
+      add_brief(without_empty_rows(own(shift_cell, shifted, all, true)),
+                fmt::format(": change against {} [95 % interval]", control));
   }
-  if (const Grid otherwise = told(own(otherwise_cell, view.shifted, {mean_scenario}, true)); !otherwise.rows.empty()) {
-    const std::string what = fmt::format("ommands for which something else was selected than in {}, share",
-                                         table.arm_title(table.arms.front()));
-    section.add(in_markdown, Paragraph{{fmt::format("C{}:", what)}});
-    add(reading, otherwise, "otherwise", fmt::format("C{}, {}; {}", what, table.title(), columns),
-        "Selected otherwise than in " + table.arm_title(table.arms.front()));
-    add(in_terminal, otherwise, "", fmt::format("{}: c{}", field, what));
+  if (const Grid otherwise = without_empty_rows(own(otherwise_cell, view.shifted, {mean_scenario}, true));
+      !otherwise.rows.empty()) {
+    const std::string what = fmt::format("commands for which something else was selected than in {}, share", control);
+    add(otherwise, "otherwise", fmt::format("{}, {}; {}", capital(what), table.title(), columns),
+        "Selected otherwise than in " + control, capital(what) + ":");
+    add_brief(otherwise, ": " + what);
   }
   if (!any_seen(table)) return;
   if (!any_seen_input(table)) {
     if (last) section.add(everywhere, Paragraph{{"No test input occurred in training."}});
     return;
   }
-  section.add(in_markdown, Paragraph{{"Test inputs that occurred in training, share:"}});
-  add(reading, told(own(seen_cell, view.columns, all, false)), "seen",
-      fmt::format("Test inputs that occurred in training, share, {}; {}", table.title(), columns),
-      "Test inputs that occurred in training");
-  add(in_terminal, told(own(seen_cell, plain, {mean_scenario}, true)), "",
-      field + ": test inputs that occurred in training, share");
+  const std::string seen = "test inputs that occurred in training, share";
+  add(without_empty_rows(own(seen_cell, view.columns, all, false)), "seen",
+      fmt::format("{}, {}; {}", capital(seen), table.title(), columns), "Test inputs that occurred in training",
+      capital(seen) + ":");
+  add_brief(without_empty_rows(own(seen_cell, plain, {mean_scenario}, true)), ": " + seen);
 }
 
 }  // namespace

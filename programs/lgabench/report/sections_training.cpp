@@ -133,7 +133,7 @@ Section learning_curves(const Material& material) {
     }
     if (large.charts.empty()) continue;
     section.add(reading, std::move(large), "Mean over the scenarios");
-    if (small.charts.size() > 1) section.add(on_page, std::move(small), "Each scenario");
+    if (small.charts.size() > 1) section.add(reading, std::move(small), "Each scenario");
   }
   if (!section.blocks.empty())
     section.add(reading, Paragraph{{"What methods logged while they trained, mean over training seeds, with the most "

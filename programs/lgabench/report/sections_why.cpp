@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <iterator>
 #include <map>
 #include <set>
@@ -106,7 +105,7 @@ struct Endings {
     grid.rows.push_back({row.is_mean() ? TableCell() : TableCell(row.scenario), std::move(cells)});
   }
 
-  void put_into(Section& section) {
+  void put_into(Section& section, const std::string& lead = "") {
     for (Grid* grouped : {&each, &levels}) {
       grouped->heads = mean.heads;
       grouped->bars = mean.bars;
@@ -124,8 +123,8 @@ struct Endings {
       return std::lexicographical_compare(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(),
                                           [&](const auto& x, const auto& y) { return came.at(x) < came.at(y); });
     });
-    section.add(reading, std::move(mean));
-    if (!each.rows.empty()) section.add(on_page, std::move(each), "Each scenario");
+    section.add(reading, std::move(mean), "", lead);
+    if (!each.rows.empty()) section.add_detail(std::move(each), "Each scenario");
     if (!levels.rows.empty()) section.add(reading, std::move(levels), "Each level of each axis");
   }
 };
@@ -174,15 +173,13 @@ Section phi(const Material& material) {
     if (worded_otherwise(phi.asked_as, phi.utterance)) known.insert(wording);
   }
   if (grid.rows.empty()) return section;
-  section.add(
-      on_page,
+  section.add_detail(
       Paragraph{{"φ̂ is what a method selected as mattering for a command: object types and textures. "
                  "Precision is the share of it that is right, recall the share of what is right that it has."}});
-  if (Grid in_words = words_grid(material, tell); !in_words.rows.empty()) section.add(on_page, std::move(in_words));
-  section.add(in_markdown,
-              Paragraph{{"Against the scenario's true distribution: precision and recall of what was selected, "
-                         "and how many were selected of how many that are true."}});
-  section.add(reading, std::move(grid), "Precision, recall, queries and seconds");
+  if (Grid in_words = words_grid(material, tell); !in_words.rows.empty()) section.add_detail(std::move(in_words));
+  section.add(reading, std::move(grid), "Precision, recall, queries and seconds",
+              "Against the scenario's true distribution: precision and recall of what was selected, and how many were "
+              "selected of how many that are true.");
   if (known.empty()) return section;
   for (const std::string& wording : known) wordings.items.push_back({wording});
   section.add(reading, Paragraph{{"Where the question was worded otherwise than the command:"}});
@@ -224,8 +221,7 @@ Section failures(const Material& material) {
       }
       endings.add(material, table, row, bar(parts, row.episodes), std::move(numbers));
     }
-  section.add(in_markdown, Paragraph{{"Episodes over all scenarios."}});
-  endings.put_into(section);
+  endings.put_into(section, "Episodes over all scenarios.");
   return section;
 }
 
@@ -262,11 +258,10 @@ Section attribution(const Material& material) {
   if (any_read) seen = "Reading, where the same policy succeeds with the simulator's names in the same picture; else ";
   if (any_perceived) seen += "perception, where the same policy succeeds in the same scene seen without error; else ";
   seen += "the";
-  seen.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(seen.front())));
   section.add(reading, Paragraph{{fmt::format("{} abstraction, where the same policy succeeds in the same scene with "
                                               "the true mask; else the policy. Episodes over all scenarios, of methods "
                                               "that select.",
-                                              seen)}});
+                                              capital(seen))}});
   endings.put_into(section);
   return section;
 }

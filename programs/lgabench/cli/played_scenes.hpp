@@ -13,7 +13,7 @@
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/record/cell.hpp>
 
-namespace lgabench::worker {
+namespace lgabench::cli {
 
 /// Reads each cell, and loads each engine, once. One thread.
 class PlayedScenes {
@@ -50,4 +50,4 @@ std::function<bool(int column, int row)> target_pixels(const Scene& scene, const
 /// Error. `verb` is named in errors. @throws InputError where there is no such list.
 void answer_requests(const std::string& verb, const std::function<Json(const JsonReader&)>& answer);
 
-}  // namespace lgabench::worker
+}  // namespace lgabench::cli

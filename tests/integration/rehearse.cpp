@@ -1,13 +1,19 @@
-#include <lgabench/study/rehearse.hpp>
-
+// A test tool: rehearse PROTOCOL OUT PEOPLE. Simulated people take part in a study over HTTP, as browsers do. They are
+// invented: no number of theirs is a result. They need no real time: the times that they report are drawn, slower in
+// the condition human, and their answers are the truth with slips.
 #include <fmt/format.h>
 #include <httplib.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <thread>
 
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/random.hpp>
+#include <lgabench/study/server.hpp>
 #include <lgabench/study/session.hpp>
 #include <lgabench/study/withdrawal.hpp>
 
@@ -17,6 +23,7 @@ namespace {
 constexpr double human_s = 120, edit_s = 45;           // median seconds
 constexpr double spread_of_people = .25, spread = .3;  // of log seconds
 
+// One session from consent to debriefing, on the pages that people get; `number` seeds the person.
 class Person {
  public:
   Person(const Protocol& protocol, int port, int number)
@@ -171,8 +178,31 @@ class Person {
   std::string address_;
 };
 
+void rehearse(const fs::path& protocol, const fs::path& out, int people) {
+  Study study(out, read_protocol(protocol), protocol, Kind::rehearsal);
+  Server server(study, load_site(study.protocol()), {});
+  std::exception_ptr failure;
+  std::thread serving([&server] { server.run(); });
+  try {
+    for (int i = 0; i < people; ++i) Person(study.protocol(), server.port(), study.slots()).take_part();
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  server.stop();
+  serving.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
 }  // namespace
-
-void simulate_person(const Protocol& protocol, int port, int number) { Person(protocol, port, number).take_part(); }
-
 }  // namespace lgabench::study
+
+int main(int argc, char** argv) {
+  if (argc != 4) return 2;
+  try {
+    lgabench::study::rehearse(argv[1], argv[2], std::stoi(argv[3]));
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s\n", e.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,4 +1,4 @@
-#include <lgabench/worker/played_scenes.hpp>
+#include <lgabench/cli/played_scenes.hpp>
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/plugin/loader.hpp>
 
-namespace lgabench::worker {
+namespace lgabench::cli {
 
 PlayedScenes::PlayedScenes(const std::vector<std::filesystem::path>& more)
     : catalogue_(scan_plugins(plugin_directories(more))) {}
@@ -76,4 +76,4 @@ void answer_requests(const std::string& verb, const std::function<Json(const Jso
   }
 }
 
-}  // namespace lgabench::worker
+}  // namespace lgabench::cli
