@@ -41,11 +41,6 @@ Labels read_labels(const fs::path& board) {
   return labels;
 }
 
-std::string capital(std::string text) {
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text;
-}
-
 std::string label_of(const Labels& labels, const Entry& entry, const std::vector<std::string>& telling) {
   const Competitor& row = entry.identity.row;
   const Labels::RowLabel* best = nullptr;

@@ -39,7 +39,4 @@ std::string policy_label(const Labels& labels, const Entry& entry);
 /// Whose answers it acts on, in a few words: "a model, recorded"; "" of what selects nothing.
 std::string answers_label(const Entry& entry);
 
-/// The text with a capital.
-std::string capital(std::string text);
-
 }  // namespace lgabench::leaderboard
