@@ -417,7 +417,7 @@ class Documents(unittest.TestCase):
 class Commands(unittest.TestCase):
     @functools.lru_cache(None)
     def help_of(self, *verb):
-        wanted = "--help-all" if verb in (("run",), ("cluster",)) else "--help"
+        wanted = "--help-all" if verb in ((), ("run",), ("cluster",)) else "--help"
         return subprocess.run([LGABENCH, *verb, wanted], capture_output=True, text=True).stdout
 
     def test_the_table_of_axes_is_the_programs(self):

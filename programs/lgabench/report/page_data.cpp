@@ -50,101 +50,125 @@ Place place(const std::string& layout, const std::string& engine, const std::str
   return {layout, engine, arm, scenario, method, n};
 }
 
-}  // namespace
+// Values that cells share: each is said once, and a cell names its number.
+template <class Value>
+class Numbered {
+ public:
+  std::size_t number_of(const Value& value) { return numbers_.emplace(value, numbers_.size()).first->second; }
 
-Json page_data(const Material& material) {
-  const Pictures& pictures = material.pictures;
-  std::map<Place, std::size_t> rows;
-  Json titles = Json::array();
-  for (const Table& table : material.summary.tables)
-    for (const Row& row : table.rows) {
-      rows[place(row.layout, row.engine, row.arm, row.scenario, row.method, row.demonstrations)] = row.index;
-      titles.push_back(title_of(material.styles, table, row));
+  Json list() const {
+    std::vector<Json> all(numbers_.size());
+    for (const auto& [value, number] : numbers_) all[number] = value;
+    return all;
+  }
+
+ private:
+  std::map<Value, std::size_t> numbers_;
+};
+
+class PageData {
+ public:
+  explicit PageData(const Material& material) : material_(material), pictures_(material.pictures) {
+    for (const Table& table : material.summary.tables)
+      for (const Row& row : table.rows)
+        rows_[place(row.layout, row.engine, row.arm, row.scenario, row.method, row.demonstrations)] = row.index;
+  }
+
+  Json json() {
+    Json cells = Json::array(), titles = Json::array(), arms = Json::object(), oracle = Json::object();
+    for (const CellResult& cell : material_.run.cells)
+      if (!cell.failed) cells.push_back(of_cell(cell));
+    for (const Table& table : material_.summary.tables) {
+      for (const Row& row : table.rows) titles.push_back(title_of(material_.styles, table, row));
+      for (const auto& [arm, title] : table.arm_titles) arms[arm] = readable(title);
     }
+    for (const auto& [scene, expert] : pictures_.oracle) oracle[scene] = places_of(expert.first, expert.second);
+    return {{"arms", arms},
+            {"failures", words_},
+            {"phi", phis_.list()},
+            {"titles", titles},
+            {"cells", cells},
+            {"scenes", scenes_.list()},
+            {"pictures", pictures_.scenes},
+            {"masks", pictures_.masks},
+            {"targets", pictures_.targets},
+            {"oracle", oracle},
+            {"inputs", inputs_.list()},
+            {"seen", pictures_.seen}};
+  }
 
-  const std::vector<std::string> words = failure_words();
-  std::map<std::vector<std::string>, std::size_t> scenes;  // of an arm, shared by the cells that play it
-  std::map<Json, std::size_t> phis;                        // what was selected, shared likewise
-  std::map<Json, std::size_t> inputs;                      // what policies read, shared likewise
-  Json cells = Json::array();
-  for (const CellResult& cell : material.run.cells) {
-    if (cell.failed) continue;
-    Json commands = Json::array(), masks = Json::array(), selected = Json::array();
+ private:
+  Json of_cell(const CellResult& cell) {
+    Json commands = Json::array(), masks = Json::array(), selected = Json::array(), played = Json::array();
     for (const CommandResult& command : cell.commands) {
       commands.push_back(command.utterance);
-      Json chips = Json::array();  // [what, whether right, missed or wrong, the names]
-      for (const PhiWords& of : phi_words(cell, command))
-        for (const auto& [kind, names] : {std::pair{"better", &of.right}, {"missed", &of.missed}, {"worse", &of.wrong}})
-          if (!names->empty()) chips.push_back({of.about + " " + of.feature, kind, listed(*names, of.known)});
-      selected.push_back(phis.emplace(chips, phis.size()).first->second);
+      selected.push_back(phis_.number_of(chips(cell, command)));
       // What follows the scene's hash in the names of pictures.masks.
       masks.push_back(command.quality.empty() ? Json() : Json(mask_key("", cell, command.selection)));
     }
-    Json played = Json::array();
-    for (const std::string& arm : cell.arms) {
-      std::string outcomes, blamed;  // a character an episode
-      std::vector<std::string> hashes;
-      Json given = Json::array(), actions = Json::object(), ends = Json::object(), read = Json::object();
-      const std::vector<Episode>& all = cell.episodes.at(arm);
-      for (std::size_t i = 0; i < all.size(); ++i) {
-        const Episode& e = all[i];
-        outcomes += outcome_letter(e, words);
-        blamed += attribution_letter(e);
-        hashes.push_back(e.scene);
-        given.push_back(e.given());
-        if (!e.action.empty() && pictures.scenes.count(e.scene) != 0)
-          actions[std::to_string(i)] = places_of(cell.environment, e.action);
-        if (const auto end = pictures.ends.find(end_key(cell, arm, i, cell.engine)); end != pictures.ends.end())
-          ends[std::to_string(i)] = end->second;
-        if (const auto input = pictures.inputs.find(episode_key(cell, arm, i)); input != pictures.inputs.end())
-          read[std::to_string(i)] = inputs.emplace(to_json(input->second), inputs.size()).first->second;
-      }
-      const std::size_t shared = scenes.emplace(hashes, scenes.size()).first->second;
-      const auto row = [&](const std::string& scenario) {
-        return rows.at(place(cell.layout, cell.engine, arm, scenario, cell.method, cell.demonstrations));
-      };
-      played.push_back({{"arm", arm},
-                        {"rows", {row(cell.scenario), row(mean_scenario)}},
-                        {"scenes", shared},
-                        {"commands", given},
-                        {"outcomes", outcomes},
-                        {"attribution", blamed},
-                        {"actions", actions},
-                        {"ends", ends},
-                        {"read", read}});
-    }
-    cells.push_back({{"cell", cell.key},
-                     {"scenario", cell.scenario},
-                     {"seed", cell.training_seed},
-                     {"participant", cell.participant},
-                     {"commands", commands},
-                     {"masks", masks},
-                     {"phi", selected},
-                     {"arms", played}});
+    for (const std::string& arm : cell.arms) played.push_back(of_arm(cell, arm));
+    return {{"cell", cell.key},
+            {"scenario", cell.scenario},
+            {"seed", cell.training_seed},
+            {"participant", cell.participant},
+            {"commands", commands},
+            {"masks", masks},
+            {"phi", selected},
+            {"arms", played}};
   }
-  Json arms = Json::object();
-  for (const Table& table : material.summary.tables)
-    for (const auto& [arm, title] : table.arm_titles) arms[arm] = readable(title);
-  std::vector<Json> lists(scenes.size());
-  for (const auto& [hashes, number] : scenes) lists[number] = hashes;
-  std::vector<Json> selections(phis.size());
-  for (const auto& [words_of, number] : phis) selections[number] = words_of;
-  std::vector<Json> all_read(inputs.size());
-  for (const auto& [input, number] : inputs) all_read[number] = input;
-  Json oracle = Json::object();
-  for (const auto& [scene, expert] : pictures.oracle) oracle[scene] = places_of(expert.first, expert.second);
-  return {{"arms", arms},
-          {"failures", words},
-          {"phi", selections},
-          {"titles", titles},
-          {"cells", cells},
-          {"scenes", lists},
-          {"pictures", pictures.scenes},
-          {"masks", pictures.masks},
-          {"targets", pictures.targets},
-          {"oracle", oracle},
-          {"inputs", all_read},
-          {"seen", pictures.seen}};
-}
+
+  // What was selected, a chip each: what, whether right, missed or wrong, the names.
+  static Json chips(const CellResult& cell, const CommandResult& command) {
+    Json all = Json::array();
+    for (const PhiWords& of : phi_words(cell, command))
+      for (const auto& [kind, names] : {std::pair{"better", &of.right}, {"missed", &of.missed}, {"worse", &of.wrong}})
+        if (!names->empty()) all.push_back({of.about + " " + of.feature, kind, listed(*names, of.known)});
+    return all;
+  }
+
+  Json of_arm(const CellResult& cell, const std::string& arm) {
+    std::string outcomes, blamed;  // a character an episode
+    std::vector<std::string> hashes;
+    Json given = Json::array(), actions = Json::object(), ends = Json::object(), read = Json::object();
+    const std::vector<Episode>& all = cell.episodes.at(arm);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Episode& e = all[i];
+      outcomes += outcome_letter(e, words_);
+      blamed += attribution_letter(e);
+      hashes.push_back(e.scene);
+      given.push_back(e.given());
+      if (!e.action.empty() && pictures_.scenes.count(e.scene) != 0)
+        actions[std::to_string(i)] = places_of(cell.environment, e.action);
+      if (const auto end = pictures_.ends.find(end_key(cell, arm, i, cell.engine)); end != pictures_.ends.end())
+        ends[std::to_string(i)] = end->second;
+      if (const auto input = pictures_.inputs.find(episode_key(cell, arm, i)); input != pictures_.inputs.end())
+        read[std::to_string(i)] = inputs_.number_of(to_json(input->second));
+    }
+    const auto row = [&](const std::string& scenario) {
+      return rows_.at(place(cell.layout, cell.engine, arm, scenario, cell.method, cell.demonstrations));
+    };
+    return {{"arm", arm},
+            {"rows", {row(cell.scenario), row(mean_scenario)}},
+            {"scenes", scenes_.number_of(hashes)},
+            {"commands", given},
+            {"outcomes", outcomes},
+            {"attribution", blamed},
+            {"actions", actions},
+            {"ends", ends},
+            {"read", read}};
+  }
+
+  const Material& material_;
+  const Pictures& pictures_;
+  const std::vector<std::string> words_ = failure_words();
+  std::map<Place, std::size_t> rows_;
+  Numbered<std::vector<std::string>> scenes_;  // of an arm
+  Numbered<Json> phis_;                        // what was selected
+  Numbered<Json> inputs_;                      // what policies read
+};
+
+}  // namespace
+
+Json page_data(const Material& material) { return PageData(material).json(); }
 
 }  // namespace lgabench::report
