@@ -51,7 +51,7 @@ std::string label_of(const Labels& labels, const Entry& entry, const std::vector
   }
   const ReferenceRow* reference = row.is_reference() ? find_reference_row(row.id) : nullptr;
   std::string text = best        ? best->label
-                     : reference ? capital(reference->name)
+                     : reference ? statistics::capital(reference->name)
                                  : entry.about.value("label", statistics::display_name(row.own_name()));
   for (const std::string& option : telling) {
     if (!row.options.contains(option) || (best && best->options.contains(option))) continue;

@@ -78,7 +78,7 @@ bool is_column(const NamedTable& table, Ranking ranking) {
 std::optional<Grid> overview_grid(const Suites& suites, Ranking ranking) {
   Grid grid;
   grid.name = section_of(ranking);
-  grid.caption = capital(to_string(ranking)) + ": success of every method in every suite; bold: rank 1";
+  grid.caption = statistics::capital(to_string(ranking)) + ": success of every method in every suite; bold: rank 1";
   grid.heads = {"method", "policy", "answers"};
   std::map<RowWords, Numbers> rows;
   std::size_t columns = 0;
@@ -156,7 +156,7 @@ Document overview(const Suites& suites) {
   for (const Ranking ranking : rankings) {
     auto grid = overview_grid(suites, ranking);
     if (!grid) continue;
-    Section section{section_of(ranking), capital(to_string(ranking))};
+    Section section{section_of(ranking), statistics::capital(to_string(ranking))};
     section.add<Paragraph>(
         reading, {{words_of(ranking) + " The mean is that of rows which are in every suite of the table; a suite of "
                                        "perturbed scenes enters with its area. A row that lacks suites stands where "
@@ -190,7 +190,7 @@ Json overview_data(const Suites& suites) {
           return std::any_of(suite.second.begin(), suite.second.end(),
                              [&](const NamedTable& table) { return is_column(table, ranking); });
         }))
-      tabs.push_back({{"title", capital(to_string(ranking))}, {"sections", {section_of(ranking)}}});
+      tabs.push_back({{"title", statistics::capital(to_string(ranking))}, {"sections", {section_of(ranking)}}});
   return {{"tabs", tabs}};
 }
 

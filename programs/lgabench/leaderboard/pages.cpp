@@ -65,7 +65,7 @@ Document readme(const Suites& suites) {
     introduction.push_back(Span::link("Sortable tables, scenarios, episodes", suite + ".html"));
     section.add<Paragraph>(reading, {std::move(introduction)});
     for (const NamedTable& table : tables) {
-      if (tables.size() > 1) section.add<Heading>(reading, {capital(to_string(table.ranking))});
+      if (tables.size() > 1) section.add<Heading>(reading, {statistics::capital(to_string(table.ranking))});
       add_table(section, table);
     }
     document.sections.push_back(std::move(section));

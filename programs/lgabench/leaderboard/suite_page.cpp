@@ -301,7 +301,7 @@ std::string title_of(const NamedTable& table) {
 
 // What a page calls it: its ranking, and its preset where another table of the page has that ranking too.
 std::string section_title(const NamedTable& table, const std::vector<NamedTable>& tables) {
-  const std::string ranking = capital(to_string(table.ranking));
+  const std::string ranking = statistics::capital(to_string(table.ranking));
   const auto alike = std::count_if(tables.begin(), tables.end(),
                                    [&table](const NamedTable& one) { return one.ranking == table.ranking; });
   if (alike < 2) return ranking;

@@ -13,8 +13,6 @@
 
 namespace lgabench::leaderboard {
 
-using statistics::capital;
-
 /// A row of a ranking, with what it is called.
 struct NamedStanding : Standing {
   std::string name{};             // as statistics/names.hpp takes it; no two of a table alike
