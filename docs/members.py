@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the tables of members in docs/formats from the descriptions in the schemas there; those of docs/formats/method-protocol.md
+"""Writes the tables of members in docs/formats from the schemas there; those of docs/formats/method-protocol.md
 between `<!-- messages:... -->` and `<!-- /messages -->`.
 
 Usage: docs/members.py [OUTPUT_DIR]

@@ -1,14 +1,14 @@
-// Schemas of docs/formats against the records that are declared by fields(). LGABENCH_WRITE_GOLDEN=1 writes into a
-// schema what its record declares, and keeps what it says beyond: descriptions, patterns, and all of a member that is
-// any JSON.
+// A run's records against their schemas in docs/formats.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstdlib>
 #include <functional>
 #include <set>
 
+#include <lgabench/abstraction/cassette.hpp>
+#include <lgabench/abstraction/quality.hpp>
 #include <lgabench/core/version.hpp>
+#include <lgabench/host/messages.hpp>
+#include <lgabench/job/check_report.hpp>
 #include <lgabench/record/cell_status.hpp>
 #include <lgabench/record/episode.hpp>
 #include <lgabench/record/fields.hpp>
@@ -16,79 +16,52 @@
 #include <lgabench/record/run_record.hpp>
 #include <lgabench/record/shown.hpp>
 
+#include "../described.hpp"
 #include "../schemas.hpp"
 
 namespace lgabench {
 
+void fields(CassetteLine& line, Fields& field);
 void fields(CellStatus& status, Fields& field);
+void fields(CheckReport& report, Fields& field);
+void fields(Command& command, Fields& field);
 void fields(Episode& episode, Fields& field);
+void fields(FeatureSpace& space, Fields& field);
+void fields(NameQuality& names, Fields& field);
+void fields(Needs& needs, Fields& field);
 void fields(PerturbedEpisode& episode, Fields& field);
+void fields(Placed& placed, Fields& field);
+void fields(ProcessState& state, Fields& field);
 void fields(RunRecord& record, Fields& field);
+void fields(SelectionCost& cost, Fields& field);
+void fields(SetQuality& set, Fields& field);
 void fields(ShownScene& scene, Fields& field);
 
 namespace {
 
-using Ordered = nlohmann::ordered_json;
-
-// Whether a schema may keep what it says under `key`: it takes no value that the record does not.
-bool narrows(const std::string& key, const Ordered& said, const Ordered& declared) {
-  if (key == "type" && (said.contains("enum") || said.contains("const"))) return true;
-  if (key == "enum" && said.contains("const")) return true;
-  if (!said.contains(key)) return false;
-  const Ordered& own = said.at(key);
-  if (key == "minimum") return own >= declared;
-  if (key == "maximum") return own <= declared;
-  if (key != "type" && key != "enum") return own == declared;
-  const Ordered all = declared.is_array() ? declared : Ordered::array({declared});
-  const Ordered some = own.is_array() ? own : Ordered::array({own});
-  return std::all_of(some.begin(), some.end(),
-                     [&](const Ordered& one) { return std::find(all.begin(), all.end(), one) != all.end(); });
-}
-
-// A schema that says what it said and what is declared; without members that no longer are.
-Ordered completed(Ordered said, const Ordered& declared) {
-  if (said.is_null()) said = Ordered::object();
-  for (const auto& [key, value] : declared.items()) {
-    if (key == "properties") {
-      Ordered members = Ordered::object();
-      for (const auto& [name, member] : said[key].items())
-        if (value.contains(name)) members[name] = completed(member, value.at(name));
-      for (const auto& [name, member] : value.items())
-        if (!members.contains(name)) members[name] = completed({}, member);
-      said[key] = members;
-    } else if (key == "required") {
-      for (const Ordered& name : value)
-        if (std::find(said[key].begin(), said[key].end(), name) == said[key].end()) said[key].push_back(name);
-    } else if (value.is_object()) {
-      said[key] = completed(said[key], value);
-    } else if (!value.is_null() && !narrows(key, said, value)) {
-      said[key] = value;
-    }
-  }
-  return said;
-}
-
-// `place`: of what is declared, in the schema.
-void expect_schema(const std::string& name, const Ordered& declared, const std::string& place = "") {
-  const fs::path file = fs::path(LGABENCH_FORMATS) / (name + ".schema.json");
-  const Ordered said = Ordered::parse(read_file(file));
-  Ordered wanted = said;
-  Ordered& part = wanted[Ordered::json_pointer(place)];
-  part = completed(part, declared);
-  if (std::getenv("LGABENCH_WRITE_GOLDEN") && Json(said) != Json(wanted)) write_file(file, wanted.dump(2) + "\n");
-  EXPECT_EQ(Json(said).dump(1), Json(wanted).dump(1)) << name << ": LGABENCH_WRITE_GOLDEN=1 writes it";
-}
-
-TEST(Fields, SchemasSayWhatRecordsDeclare) {
-  expect_schema("cell", schema_of<Cell>().first);
-  expect_schema("episodes", schema_of<Episode>(false).first);
-  expect_schema("perturbed", schema_of<PerturbedEpisode>(false).first);
-  expect_schema("run", schema_of<RunRecord>(false).first);
-  expect_schema("shown", schema_of<ShownScene>(false).first, "/properties/scenes/items");
+TEST(Fields, WriteTheSchemasOfARun) {
   CellStatus failed;
   failed.failed = true;
-  expect_schema("status", schema_of<CellStatus>(false).first, "/oneOf/0");
-  expect_schema("status", schema_of<CellStatus>(false, failed).first, "/oneOf/1");
+  expect_schema("cassette", schema_of<CassetteLine>());
+  expect_schema("cell", schema_of<Cell>());
+  expect_schema("check_plugin", schema_of<CheckReport>());
+  expect_schema("episodes", schema_of<Episode>());
+  expect_schema("perturbed", schema_of<PerturbedEpisode>());
+  expect_schema("run", schema_of<RunRecord>());
+  expect_schema("selection", schema_of<NameQuality>(), "/definitions/quality");
+  expect_schema("selection", schema_of<SetQuality>(), "/definitions/groups");
+  expect_schema("shown", schema_of<ShownScene>(), "/properties/scenes/items");
+  expect_schema("status", schema_of<CellStatus>(), "/oneOf/0");
+  expect_schema("status", schema_of(failed), "/oneOf/1");
+}
+
+TEST(Fields, WriteTheSchemasOfMessages) {
+  expect_schema("host_message", schema_of<Command>(), "/definitions/command");
+  expect_schema("host_message", schema_of<SelectionCost>(), "/definitions/cost");
+  expect_schema("host_message", schema_of<Placed>(), "/definitions/placed");
+  expect_schema("host_message", schema_of<FeatureSpace>(), "/definitions/space");
+  expect_schema("host_message", schema_of<ProcessState>(), "/definitions/state");
+  expect_schema("host_message", schema_of<Needs>(), "/definitions/wants");
 }
 
 // A document with every member, and its reader.

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include <lgabench/abstraction/asked_model.hpp>
+#include <lgabench/core/fields.hpp>
 #include <lgabench/core/file_lock.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
@@ -23,11 +24,31 @@ std::string read_word(const JsonReader& reader) {
   return text;
 }
 
+constexpr double most_reply_seconds = 1e9;
+
 double read_reply_seconds(const JsonReader& reader) {
-  constexpr double most = 1e9;
   const double seconds = reader.number();
-  if (!(seconds >= 0 && seconds <= most)) reader.fail(fmt::format("seconds from 0 to {:g}", most));
+  if (!(seconds >= 0 && seconds <= most_reply_seconds))
+    reader.fail(fmt::format("seconds from 0 to {:g}", most_reply_seconds));
   return seconds;
+}
+
+void fields(CassetteLine& line, Fields& field) {
+  constexpr long long most_tokens = 1LL << 40;
+  ChatReply& reply = line.reply;
+  const Form apart = within(0, most_tokens, when(reply.prompt_tokens + reply.reply_tokens > 0));
+  field("key", line.key);
+  field("model", line.model);
+  field("request", line.request);
+  field("reply", reply.text);
+  field("tokens", reply.tokens, within(0, most_tokens));
+  field("seconds", reply.seconds, up_to(most_reply_seconds));
+  field("prompt_tokens", reply.prompt_tokens, apart);
+  field("reply_tokens", reply.reply_tokens, apart);
+  field("served", reply.served, when(!reply.served.empty()));
+  field("day", reply.day, when(!reply.day.empty()));
+  for (const char* word : {"served", "day"})
+    if (field.reading() && field.reading()->has(word)) read_word(field.reading()->at(word));
 }
 
 Cassette::Cassette(const fs::path& file) : file_(file) {
@@ -40,19 +61,12 @@ bool Cassette::read() {
   const std::lock_guard lock(mutex_);
   for (std::size_t end; (end = text.find('\n', size_)) != std::string::npos; size_ = end + 1) {
     const std::string place = fmt::format("{}: line {}", file_.string(), ++lines_);
-    const Json line = parse_json(std::string_view(text).substr(size_, end - size_), place);
-    const JsonReader reader(line, place);
-    reader.only(
-        {"key", "model", "request", "reply", "tokens", "seconds", "prompt_tokens", "reply_tokens", "served", "day"});
-    const auto tokens = [&](const char* member) { return reader.at(member).integer(0, 1LL << 40); };
-    ChatReply reply{reader.at("reply").string(), tokens("tokens"), read_reply_seconds(reader.at("seconds"))};
-    if (reader.has("prompt_tokens")) reply.prompt_tokens = tokens("prompt_tokens");
-    if (reader.has("reply_tokens")) reply.reply_tokens = tokens("reply_tokens");
-    if (reader.has("served")) reply.served = read_word(reader.at("served"));
-    if (reader.has("day")) reply.day = read_word(reader.at("day"));
-    auto& served = served_[to_text(AskedModel::of(reader.at("model").string(), reader.at("request")))];
+    const Json json = parse_json(std::string_view(text).substr(size_, end - size_), place);
+    const JsonReader reader(json, place);
+    const auto [key, model, request, reply] = value_of<CassetteLine>(reader);
+    auto& served = served_[to_text(AskedModel::of(model, reader.at("request")))];
     if (!reply.served.empty()) served.insert(reply.served);
-    replies_[reader.at("key").string()] = std::move(reply);
+    replies_[key] = reply;
   }
   return size_ == text.size();
 }
@@ -101,12 +115,6 @@ void ChatReply::add(const ChatReply& later) {
 
 void Cassette::add(const std::string& key, const Json& request, const ChatReply& reply, bool any_served) {
   const std::string model = request.at("model");
-  Json line{{"key", key},          {"model", model},         {"request", request},
-            {"reply", reply.text}, {"tokens", reply.tokens}, {"seconds", reply.seconds}};
-  if (reply.prompt_tokens + reply.reply_tokens > 0)
-    line.update({{"prompt_tokens", reply.prompt_tokens}, {"reply_tokens", reply.reply_tokens}});
-  if (!reply.served.empty()) line["served"] = reply.served;
-  if (!reply.day.empty()) line["day"] = reply.day;
   const std::lock_guard lock(mutex_);
   const std::string asked = to_text(AskedModel::of(model, JsonReader(request, "request")));
   if (const auto before = served_.find(asked); before != served_.end() && !any_served && !reply.served.empty() &&
@@ -115,7 +123,7 @@ void Cassette::add(const std::string& key, const Json& request, const ChatReply&
         "the server now names its model \"{}\", the replies in {} are of \"{}\"; give another --cassette, or "
         "--any-served to keep the replies of both",
         reply.served, file_.string(), fmt::join(before->second, "\", \"")));
-  const std::string bytes = canonical(line) + '\n';
+  const std::string bytes = canonical(json_of(CassetteLine{key, model, request, reply})) + '\n';
   append_file(file_, bytes);
   size_ += bytes.size();
   ++lines_;

@@ -28,12 +28,18 @@ struct ChatReply {
   void add(const ChatReply& later);
 };
 
+/// A line of a cassette's file.
+struct CassetteLine {
+  std::string key, model;
+  Json request;
+  ChatReply reply;
+};
+
 /// A server's name for its model, or a day: at most 200 bytes in a line. @throws InputError
 std::string read_word(const JsonReader& reader);
 
-/// A file of JSON lines {"key", "model", "request", "reply", "tokens", "seconds"}, and where they are known {"served",
-/// "day", "prompt_tokens", "reply_tokens"}; each reply adds a line, which is on the disk before add() returns, so that
-/// an interrupted series of questions goes on where it stopped. May be used by several threads, and by several
+/// A file with a CassetteLine for each reply, which is on the disk before add() returns, so that an interrupted series
+/// of questions goes on where it stopped. May be used by several threads, and by several
 /// processes that take turns to ask.
 class Cassette {
  public:

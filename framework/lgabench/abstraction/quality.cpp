@@ -1,12 +1,11 @@
 #include <lgabench/abstraction/quality.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include <lgabench/core/contains.hpp>
+#include <lgabench/core/fields.hpp>
 
 namespace lgabench {
 namespace {
@@ -56,30 +55,30 @@ NameQuality mean_names(const std::vector<NameQuality>& all) {
           over(&NameQuality::true_size).value_or(0)};
 }
 
-Json to_json(const NameQuality& quality) {
-  const auto share = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
-  return {{"precision", share(quality.precision)},
-          {"recall", share(quality.recall)},
-          {"size", count_json(quality.size)},
-          {"true_size", count_json(quality.true_size)}};
-}
-
-constexpr double most_names = 1e6;
-
-NameQuality read_names(const JsonReader& reader) {
-  const auto within = [&reader](const char* member, double most) {
-    const JsonReader value = reader.at(member);
-    const double number = value.number();
-    if (!(number >= 0 && number <= most)) value.fail(fmt::format("a number from 0 to {:g}", most));
-    return number;
-  };
-  const auto share = [&](const char* member) {
-    return reader.at(member).json().is_null() ? std::nullopt : std::optional(within(member, 1));
-  };
-  return {share("precision"), share("recall"), within("size", most_names), within("true_size", most_names)};
+// Written as count_json() says.
+struct Count {
+  double& value;
+};
+void visit(const Slot& slot, const Count& count, const Form& form) {
+  visit(slot, count.value, form);
+  if (slot.write) *slot.write = count_json(count.value);
 }
 
 }  // namespace
+
+void fields(NameQuality& names, Fields& field) {
+  constexpr double most_names = 1e6;
+  field("precision", names.precision, or_null(!names.precision, up_to(1)));
+  field("recall", names.recall, or_null(!names.recall, up_to(1)));
+  field("size", Count{names.size}, up_to(most_names));
+  field("true_size", Count{names.true_size}, up_to(most_names));
+}
+
+void fields(SetQuality& set, Fields& field) {
+  field("object_types", set.object_types);
+  field("textures", set.textures);
+  field("pairs", set.pairs, when(set.pairs.has_value()));
+}
 
 std::optional<double> mean_of(const std::vector<std::optional<double>>& all) {
   std::optional<double> first;
@@ -125,11 +124,7 @@ Quality mean_quality(const std::vector<Quality>& all) {
   return mean;
 }
 
-Json to_json(const SetQuality& quality) {
-  Json json{{"object_types", to_json(quality.object_types)}, {"textures", to_json(quality.textures)}};
-  if (quality.pairs) json["pairs"] = to_json(*quality.pairs);
-  return json;
-}
+Json to_json(const SetQuality& quality) { return json_of(quality); }
 
 Json to_json(const Quality& quality) {
   Json json;
@@ -142,10 +137,8 @@ Quality read_quality(const JsonReader& reader) {
   if (reader.json().is_null()) return all;
   if (!reader.has("target") || reader.at("target").json().is_null()) reader.fail("the quality of the target");
   for (const auto& item : reader.json().items())
-    if (const JsonReader set = reader.at(item.key()); !set.json().is_null()) {
-      all[item.key()] = {read_names(set.at("object_types")), read_names(set.at("textures"))};
-      if (set.has("pairs")) all[item.key()].pairs = read_names(set.at("pairs"));
-    }
+    if (const JsonReader set = reader.at(item.key()); !set.json().is_null())
+      all[item.key()] = value_of<SetQuality>(set, false);
   return all;
 }
 

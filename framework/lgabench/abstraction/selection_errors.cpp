@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include <lgabench/core/contains.hpp>
+#include <lgabench/core/fields.hpp>
 #include <lgabench/core/random.hpp>
 
 namespace lgabench {
@@ -46,23 +47,14 @@ bool operator==(const SelectionErrors& a, const SelectionErrors& b) {
   return a.missing == b.missing && a.added == b.added;
 }
 
-Json to_json(const SelectionErrors& errors) {
-  Json json = Json::object();
-  if (errors.missing != 0) json["missing"] = errors.missing;
-  if (errors.added != 0) json["added"] = errors.added;
-  return json;
+void fields(SelectionErrors& errors, Fields& field) {
+  field("missing", errors.missing, up_to(1, when(errors.missing != 0)));
+  field("added", errors.added, up_to(1, when(errors.added != 0)));
 }
 
-SelectionErrors read_selection_errors(const JsonReader& reader) {
-  reader.only({"missing", "added"});
-  SelectionErrors errors;
-  for (const auto& [name, value] : {std::pair{"missing", &errors.missing}, {"added", &errors.added}}) {
-    if (!reader.has(name)) continue;
-    *value = reader.at(name).number();
-    if (!(*value >= 0 && *value <= 1)) reader.at(name).fail("a number from 0 to 1");
-  }
-  return errors;
-}
+Json to_json(const SelectionErrors& errors) { return json_of(errors); }
+
+SelectionErrors read_selection_errors(const JsonReader& reader) { return value_of<SelectionErrors>(reader); }
 
 std::string why_no_selection_errors(const Scenario& scenario) {
   for (const ScenarioCommand& command : scenario.commands)

@@ -17,11 +17,11 @@ void leaf(const Slot& slot, T& value, T (JsonReader::*read)() const, const char*
 }  // namespace
 
 Fields::Fields(const Slot& slot, const std::vector<std::string>& (*known)()) : slot_(slot) {
-  if (slot.read && slot.strict) slot.read->only(known());
+  if (slot.read && slot.strict && known) slot.read->only(known());
   if (slot.read && !slot.read->json().is_object()) slot.read->fail("an object");
   if (slot.write) *slot.write = Json::object();
   if (slot.schema) (*slot.schema)["type"] = "object";
-  if (slot.schema && slot.strict) (*slot.schema)["additionalProperties"] = false;
+  if (slot.schema) (*slot.schema)["additionalProperties"] = false;
 }
 
 void Fields::add(const char* name, const Form& form, const std::function<void(const Slot&)>& visit_in) {
@@ -46,7 +46,14 @@ void Fields::add(const char* name, const Form& form, const std::function<void(co
 
 void visit(const Slot& slot, bool& value, const Form&) { leaf(slot, value, &JsonReader::boolean, "boolean"); }
 
-void visit(const Slot& slot, double& number, const Form&) { leaf(slot, number, &JsonReader::number, "number"); }
+void visit(const Slot& slot, double& number, const Form& form) {
+  leaf(slot, number, &JsonReader::number, "number");
+  if (std::isinf(form.most)) return;
+  if (slot.schema) (*slot.schema)["minimum"] = 0;
+  if (slot.schema && form.most < 1 << 30) (*slot.schema)["maximum"] = form.most;
+  if (slot.read && !(number >= 0 && number <= form.most))
+    slot.read->fail(fmt::format("a number from 0 to {:g}", form.most));
+}
 
 void visit(const Slot& slot, std::string& text, const Form& form) {
   leaf(slot, text, &JsonReader::string, "string");

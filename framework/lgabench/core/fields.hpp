@@ -7,6 +7,7 @@
 //   }
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -24,7 +25,7 @@ struct Slot {
   bool strict = true;      // an object that is read has no other members
 
   Slot at(const JsonReader& reader) const { return {&reader, nullptr, nullptr, strict}; }
-  Slot at(Json& member) const { return write ? Slot{nullptr, &member} : Slot{nullptr, nullptr, &member, strict}; }
+  Slot at(Json& member) const { return write ? Slot{nullptr, &member} : Slot{nullptr, nullptr, &member}; }
 };
 
 /// When a member is written, and which values it may have.
@@ -33,6 +34,7 @@ struct Form {
   bool may_be_null = false, null = false;     // null: the value that is written
   bool object = false;                        // of JSON
   long long lowest = 0, highest = INT64_MAX;  // of whole numbers; a schema has a highest one below 2^30 alone
+  double most = INFINITY;                     // of other numbers, which then begin at 0; a schema has it likewise
   const char *const *words = nullptr, *expectation = nullptr;  // a format for the words; else "a, b or c"
   std::size_t count = 0;                                       // of words
 };
@@ -43,6 +45,7 @@ inline Form object(Form form = {}) { return form.object = true, form; }
 inline Form within(long long lowest, long long highest, Form form = {}) {
   return form.lowest = lowest, form.highest = highest, form;
 }
+inline Form up_to(double most, Form form = {}) { return form.most = most, form; }
 inline Form at_least(long long lowest, Form form = {}) { return form.lowest = lowest, form; }
 template <class Words>
 Form one_of(const Words& words, Form form = {}, const char* expectation = nullptr) {
@@ -107,23 +110,40 @@ void visit(const Slot& slot, std::vector<T>& values, const Form& form) {
   if (slot.schema) visit(slot.at((*slot.schema)["items"]), described, form);
 }
 
-/// The JSON Schema of what fields() reads, and where its members depend on the value, of that form of it; and the
-/// members' names.
+/// The JSON Schema of what fields() writes, and where its members depend on the value, of that form of it.
 template <class T>
-std::pair<Json, std::vector<std::string>> schema_of(bool strict = true, T form = {}) {
+Json schema_of(T form = {}) {
   Json schema;
-  Fields members({nullptr, nullptr, &schema, strict});
+  Fields members({nullptr, nullptr, &schema});
   fields(form, members);
-  return {schema, members.names()};
+  return schema;
 }
 
 template <class T>
 auto visit(const Slot& slot, T& value, const Form&) -> decltype(fields(value, std::declval<Fields&>())) {
   Fields members(slot, []() -> const std::vector<std::string>& {
-    static const std::vector<std::string> names = schema_of<T>().second;
+    static const std::vector<std::string> names = [] {
+      Json schema;
+      T form{};
+      Fields described({nullptr, nullptr, &schema});
+      fields(form, described);
+      return described.names();
+    }();
     return names;
   });
   fields(value, members);
+}
+
+/// An object that is no type of its own, as a function that names its members.
+template <class Members>
+std::enable_if_t<std::is_invocable_v<Members&, Fields&>> visit(const Slot& slot, Members& members, const Form&) {
+  if (Json schema; slot.read && slot.strict) {
+    Fields described({nullptr, nullptr, &schema});
+    members(described);
+    slot.read->only(described.names());
+  }
+  Fields named(slot);
+  members(named);
 }
 
 /// What fields() writes.

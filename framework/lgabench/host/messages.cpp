@@ -14,13 +14,19 @@ static void fields(SecondRole& second, Fields& field) {
   field("phrase", second.phrase);
 }
 
-static void fields(Command& command, Fields& field) {
+void fields(Command& command, Fields& field) {
   field("utterance", command.utterance);
   field("task", command.task);
   field("second", command.second, when(command.second.has_value()));
 }
 
-static void fields(Needs& needs, Fields& field) {
+void fields(FeatureSpace& space, Fields& field) {
+  field("id", space.id);
+  field("object_types", space.object_types);
+  field("textures", space.textures);
+}
+
+void fields(Needs& needs, Fields& field) {
   static constexpr std::array targets{"selected", "truth"};  // of Needs::Targets
   constexpr int most = 100;                                  // rollouts a demonstration: each is played by the oracle
   std::string word = targets.at(needs.targets == Needs::Targets::truth ? 1 : 0);
@@ -32,7 +38,7 @@ static void fields(Needs& needs, Fields& field) {
   field("shadows", needs.shadows, may_lack());
 }
 
-static void fields(Placed& placed, Fields& field) {
+void fields(Placed& placed, Fields& field) {
   field("id", placed.instance.id);
   field("object_type", placed.instance.object_type);
   field("texture", placed.instance.texture);
@@ -41,14 +47,14 @@ static void fields(Placed& placed, Fields& field) {
   field("column", placed.column);
 }
 
-static void fields(SelectionCost& cost, Fields& field) {
+void fields(SelectionCost& cost, Fields& field) {
   field("lm_queries", cost.lm_queries, within(0, 1 << 30));
   field("lm_tokens", cost.lm_tokens, within(0, 1LL << 60));
   field("lm_seconds", cost.lm_seconds);
   field("human_seconds", cost.human_seconds);
 }
 
-static void fields(ProcessState& state, Fields& field) {
+void fields(ProcessState& state, Fields& field) {
   field("threads", state.threads);
   field("descriptors", state.descriptors);
   field("heap_bytes", state.heap_bytes, within(0, 1LL << 60));
@@ -74,13 +80,8 @@ FeatureSet read_set(const JsonReader& reader) {
 Json to_json(const Command& command) { return json_of(command); }
 Command read_command(const JsonReader& reader) { return value_of<Command>(reader, false); }
 
-Json to_json(const FeatureSpace& space) {
-  return {{"id", space.id}, {"object_types", space.object_types}, {"textures", space.textures}};
-}
-
-FeatureSpace read_space(const JsonReader& reader) {
-  return {reader.at("id").string(), reader.at("object_types").strings(), reader.at("textures").strings()};
-}
+Json to_json(const FeatureSpace& space) { return json_of(space); }
+FeatureSpace read_space(const JsonReader& reader) { return value_of<FeatureSpace>(reader, false); }
 
 Json told(const Selection& selection) {
   Json json = distribution_json(selection);

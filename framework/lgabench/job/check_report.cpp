@@ -24,7 +24,7 @@ static void fields(Finding& finding, Fields& field) {
   finding.state = static_cast<Finding::State>(std::find(states.begin(), states.end(), state) - states.begin());
 }
 
-static void fields(CheckReport& report, Fields& field) {
+void fields(CheckReport& report, Fields& field) {
   field("findings", report.findings);
   field("hashes", report.hashes);
 }

@@ -57,11 +57,6 @@ static void visit(const Slot& slot, std::shared_ptr<const Json>& any, const Form
   if (slot.write) *slot.write = *any;
 }
 
-static void visit(const Slot& slot, SelectionErrors& errors, const Form&) {
-  if (slot.read) errors = read_selection_errors(*slot.read);
-  if (slot.write) *slot.write = to_json(errors);
-}
-
 void fields(ActingMethod& acts, Fields& field) {
   field("id", acts.id);
   field("version", acts.version);
@@ -107,10 +102,6 @@ void fields(Cell& cell, Fields& field) {
   field("data", cell.data);
   field("smoke", cell.smoke);
 }
-
-Json to_json(const ActingMethod& acts) { return json_of(acts); }
-
-ActingMethod read_acting_method(const JsonReader& reader) { return value_of<ActingMethod>(reader); }
 
 Json to_json(const Cell& cell) { return json_of(cell); }
 

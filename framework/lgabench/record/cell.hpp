@@ -74,10 +74,6 @@ struct Cell {
   std::optional<std::uint64_t> scenes_of_seed() const;
 };
 
-Json to_json(const ActingMethod& acts);
-/// @throws InputError with file and place.
-ActingMethod read_acting_method(const JsonReader& reader);
-
 Json to_json(const Cell& cell);
 /// Without `test_scenes` they are shared. @throws InputError with `file` and place.
 Cell read_cell(const Json& json, const std::string& file);

@@ -9,6 +9,7 @@ namespace lgabench {
 
 void fields(ActingMethod& acts, Fields& field);
 void fields(Cell& cell, Fields& field);
+void fields(SelectionErrors& errors, Fields& field);
 void visit(const Slot& slot, AnswerSource& source, const Form& form);
 void visit(const Slot& slot, TestScenes& scenes, const Form& form);
 void visit(const Slot& slot, TrainOn& through, const Form& form);

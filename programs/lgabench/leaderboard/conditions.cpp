@@ -3,29 +3,22 @@
 #include <fmt/format.h>
 
 #include <lgabench/harness/expand.hpp>
-#include <lgabench/leaderboard/entry.hpp>
+#include <lgabench/leaderboard/fields.hpp>
 #include <lgabench/leaderboard/tracks.hpp>
 
 namespace lgabench::leaderboard {
 
-std::vector<std::string> Conditions::members() { return {"names", "reader", "segments"}; }
-
-Conditions Conditions::read(const JsonReader& identity) {
-  Conditions conditions;
-  if (identity.has("names")) {
-    conditions.reading.names = identity.at("names").string();
-    if (!is_id(conditions.reading.names)) identity.at("names").fail("an id of letters, digits, _ and -");
-    conditions.reader_sha256 = read_sha256(identity.at("reader"));
-  }
-  if (identity.has("segments")) conditions.reading.segments = read_segments(identity.at("segments"));
-  return conditions;
-}
-
-Json Conditions::json() const {
-  Json json = Json::object();
-  if (reading.names != Reading::simulator) json.update({{"names", reading.names}, {"reader", reader_sha256}});
-  if (reading.segments != Reading::simulator) json["segments"] = reading.segments;
-  return json;
+// They stand among an identity's own members, which has none where they are the suite's.
+void fields(Conditions& conditions, Fields& field) {
+  Reading& reading = conditions.reading;
+  const JsonReader* const reader = field.reading();
+  const bool read = reader ? reader->has("names") : reading.names != Reading::simulator;
+  field("names", reading.names, when(read));
+  field("reader", conditions.reader_sha256, Form{read, read});
+  field("segments", reading.segments, segments_form(reading));
+  if (!reader || !read) return;
+  if (!is_id(reading.names)) reader->at("names").fail("an id of letters, digits, _ and -");
+  read_sha256(reader->at("reader"));
 }
 
 Conditions Conditions::of(const Cell& cell) { return {cell.reading, cell.data.value("reader", "")}; }

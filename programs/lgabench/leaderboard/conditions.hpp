@@ -18,11 +18,6 @@ struct Conditions {
   /// Whether they are the suite's.
   bool none() const { return reading.none(); }
 
-  /// Members that an identity may have for them, which has none where they are the suite's.
-  static std::vector<std::string> members();
-  static Conditions read(const JsonReader& identity);
-  Json json() const;
-
   static Conditions of(const Cell& cell);
   /// The cell as they have it, whose scenario and answers are set.
   void set(Cell& cell, const Scenario& scenario) const;

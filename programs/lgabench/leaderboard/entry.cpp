@@ -11,6 +11,7 @@
 
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/leaderboard/fields.hpp>
 #include <lgabench/leaderboard/said.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/plugin/loader.hpp>
@@ -18,7 +19,7 @@
 namespace lgabench::leaderboard {
 namespace {
 
-Json json_of(const Entry& entry) {
+Json entry_json(const Entry& entry) {
   Json json{{"id", entry.id()},          {"identity", to_json(entry.identity)}, {"preset", to_json(entry.setting)},
             {"about", entry.about},      {"failures", entry.failures},          {"phi", entry.phi},
             {"evidence", entry.evidence}};
@@ -30,20 +31,30 @@ Json json_of(const Entry& entry) {
 
 }  // namespace
 
-Json to_json(const Identity& identity) {
-  Json json{{"method", identity.row.id},
-            {"kind", identity.row.kind},
-            {"version", identity.row.version},
-            {"options", identity.row.options},
-            {"answers", {{"source", to_string(identity.answers)}, {"sha256", identity.answers_sha256}}},
-            {"engine", {{"id", identity.engine}, {"version", identity.engine_version}}},
-            {"preset", identity.preset_sha256},
-            {"scene_seed", identity.scene_seed}};
-  if (identity.row.acts) json["acts"] = to_json(*identity.row.acts);
-  if (!identity.row.asks.empty()) json["asks"] = identity.row.asks;
-  json.update(identity.conditions.json());
-  return json;
+// An entry's id is a hash of these bytes: what is new is written only where it is set.
+void fields(Identity& identity, Fields& field) {
+  Competitor& row = identity.row;
+  field("method", row.id);
+  field("kind", row.kind, one_of(competitor_kinds));
+  field("version", row.version);
+  field("options", row.options, object());
+  field("acts", row.acts, when(row.acts.has_value()));
+  field("asks", row.asks, when(!row.asks.empty()));
+  field("answers", [&](Fields& answers) {
+    answers("source", identity.answers);
+    answers("sha256", identity.answers_sha256);
+  });
+  field("engine", [&](Fields& engine) {
+    engine("id", identity.engine);
+    engine("version", identity.engine_version);
+  });
+  fields(identity.conditions, field);
+  field("preset", identity.preset_sha256);
+  field("scene_seed", identity.scene_seed);
+  if (field.reading()) row.name = row.own_name();
 }
+
+Json to_json(const Identity& identity) { return json_of(identity); }
 
 fs::path answers_file(const Identity& identity) {
   const std::string ending = kept_ending(identity.answers);
@@ -70,26 +81,28 @@ int PlayedCell::successes() const {
   return n;
 }
 
-Json to_json(const PlayedCell& cell) {
-  Json json{{"key", cell.key},
-            {"scenario", cell.place.scenario},
-            {"layout", cell.place.layout},
-            {"demonstrations", cell.place.demonstrations},
-            {"training_seed", cell.place.seed},
-            {"outcomes", cell.outcomes},
-            {"lm_queries", cell.lm_queries},
-            {"lm_tokens", cell.lm_tokens},
-            {"human_seconds", cell.human_seconds},
-            {"learn_s", cell.learn_s},
-            {"total_s", cell.total_s},
-            {"steps", cell.steps}};
-  if (cell.phi > 0) json["phi"] = cell.phi;
-  if (cell.failed.empty())
-    json.update({{"scenes", cell.scenes}, {"digest", cell.digest}});
-  else
-    json["failed"] = cell.failed;
-  return json;
+void fields(PlayedCell& cell, Fields& field) {
+  constexpr double most = 1e15;  // of questions, tokens, seconds
+  Json outcomes(cell.outcomes);  // read by the arms of the entry: read_entry()
+  field("key", cell.key);
+  field("scenario", cell.place.scenario);
+  field("layout", cell.place.layout);
+  field("demonstrations", cell.place.demonstrations);
+  field("training_seed", cell.place.seed);
+  field("outcomes", outcomes, object());
+  field("failed", cell.failed, when(!cell.failed.empty()));
+  field("scenes", cell.scenes, when(cell.failed.empty()));
+  field("digest", cell.digest, when(cell.failed.empty()));
+  field("phi", cell.phi, when(cell.phi > 0));
+  field("lm_queries", cell.lm_queries, up_to(most));
+  field("lm_tokens", cell.lm_tokens, up_to(most));
+  field("human_seconds", cell.human_seconds, up_to(most));
+  field("learn_s", cell.learn_s, up_to(most));
+  field("total_s", cell.total_s, up_to(most));
+  field("steps", cell.steps);
 }
+
+Json to_json(const PlayedCell& cell) { return json_of(cell); }
 
 std::string to_string(Tier tier) {
   constexpr const char* words[] = {"recomputed", "replayed", "reproduced"};
@@ -113,7 +126,7 @@ fs::path Entry::place() const {
 std::string Entry::hash() const { return sha256(id() + "\n" + cells_text(*this)); }
 
 std::string Entry::rest_hash() const {
-  Json json = json_of(*this);
+  Json json = entry_json(*this);
   json["evidence"] = Json::array({evidence.front()});
   json.erase("withdrawn");
   return sha256(canonical(json));
@@ -224,9 +237,9 @@ std::vector<fs::path> other_answers(const fs::path& board, const std::vector<Ent
   return others;
 }
 
-std::string entry_text(const Entry& entry) { return text_of_entry(shortened(json_of(entry))); }
+std::string entry_text(const Entry& entry) { return text_of_entry(shortened(entry_json(entry))); }
 
-std::string long_entry_text(const Entry& entry) { return text_of_entry(json_of(entry)); }
+std::string long_entry_text(const Entry& entry) { return text_of_entry(entry_json(entry)); }
 
 std::string cells_text(const Entry& entry) {
   std::string text;

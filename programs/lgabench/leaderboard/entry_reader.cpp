@@ -9,6 +9,7 @@
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/leaderboard/answer_score.hpp>
+#include <lgabench/leaderboard/fields.hpp>
 #include <lgabench/leaderboard/labels.hpp>
 #include <lgabench/leaderboard/said.hpp>
 #include <lgabench/leaderboard/verification.hpp>
@@ -30,51 +31,18 @@ void expect_time(const JsonReader& reader) {
 }
 
 Identity read_identity(const JsonReader& reader) {
-  std::vector<std::string> members = Conditions::members();
-  members.insert(members.end(),
-                 {"method", "kind", "version", "options", "asks", "acts", "answers", "engine", "preset", "scene_seed"});
-  reader.only(members);
-  Identity identity;
-  identity.row.kind = reader.at("kind").string();
-  if (identity.row.kind != "method" && identity.row.kind != "reference") reader.at("kind").fail("method or reference");
-  identity.row.id = reader.at("method").string();
-  if (reader.has("acts")) identity.row.acts = read_acting_method(reader.at("acts"));
-  identity.row.name = identity.row.own_name();
-  identity.row.version = reader.at("version").string();
-  identity.row.options = reader.at("options").json();
-  if (!identity.row.options.is_object()) reader.at("options").fail("an object");
-  if (reader.has("asks")) identity.row.asks = reader.at("asks").string();
-  const JsonReader answers = reader.at("answers"), engine = reader.at("engine");
-  answers.only({"source", "sha256"});
-  engine.only({"id", "version"});
-  identity.answers = read_answer_source(answers.at("source").string());
-  identity.answers_sha256 = read_sha256(answers.at("sha256"));
-  identity.engine = engine.at("id").string();
-  if (!is_id(identity.engine)) engine.at("id").fail("an id of letters, digits, _ and -");
-  identity.engine_version = engine.at("version").string();
-  identity.conditions = Conditions::read(reader);
-  identity.preset_sha256 = read_sha256(reader.at("preset"));
-  identity.scene_seed = static_cast<std::uint64_t>(reader.at("scene_seed").integer(0, INT64_MAX));
+  const Identity identity = value_of<Identity>(reader);
+  if (!is_id(identity.engine)) reader.at("engine").at("id").fail("an id of letters, digits, _ and -");
+  read_sha256(reader.at("answers").at("sha256"));
+  read_sha256(reader.at("preset"));
   return identity;
 }
 
-constexpr double most_amount = 1e15;  // of questions, tokens, seconds
-
 PlayedCell read_cell_line(const JsonReader& reader, const Entry& entry) {
-  reader.only({"key", "scenario", "layout", "demonstrations", "training_seed", "scenes", "digest", "failed", "outcomes",
-               "phi", "lm_queries", "lm_tokens", "human_seconds", "learn_s", "total_s", "steps"});
-  PlayedCell cell;
-  cell.place = {reader.at("scenario").string(), reader.at("layout").string(),
-                static_cast<int>(reader.at("demonstrations").integer(0, INT32_MAX)),
-                static_cast<std::uint64_t>(reader.at("training_seed").integer(0, INT64_MAX))};
-  cell.key = reader.at("key").string();
+  PlayedCell cell = value_of<PlayedCell>(reader);
   if (!is_cell_key(cell.key)) reader.at("key").fail("16 hexadecimal digits");
-  if (reader.has("failed")) cell.failed = reader.at("failed").string();
-  for (const auto& [member, text] : {std::pair("scenes", &cell.scenes), {"digest", &cell.digest}})
-    if (cell.failed.empty()) {
-      read_sha256(reader.at(member));
-      *text = reader.at(member).string();
-    }
+  for (const char* hash : {"scenes", "digest"})
+    if (cell.failed.empty()) read_sha256(reader.at(hash));
   const JsonReader outcomes = reader.at("outcomes");
   const std::vector<std::string>& arms = entry.setting.scenario(cell.place.scenario).arms;
   outcomes.only(arms);
@@ -90,22 +58,8 @@ PlayedCell read_cell_line(const JsonReader& reader, const Entry& entry) {
         letters.fail("\".\", or the letter of a failure");
     cell.outcomes[arm] = text;
   }
-  const auto phis = entry.phi.find(cell.place.scenario);
-  if (reader.has("phi"))
-    cell.phi = static_cast<std::size_t>(
-        reader.at("phi").integer(0, phis == entry.phi.end() ? 0 : static_cast<long long>(phis->size()) - 1));
-  const auto amount = [&](const char* member) {
-    const double value = reader.at(member).number();
-    if (!(value >= 0 && value <= most_amount))
-      reader.at(member).fail(fmt::format("a number from 0 to {:g}", most_amount));
-    return value;
-  };
-  cell.lm_queries = amount("lm_queries");
-  cell.lm_tokens = amount("lm_tokens");
-  cell.human_seconds = amount("human_seconds");
-  cell.learn_s = amount("learn_s");
-  cell.total_s = amount("total_s");
-  cell.steps = reader.at("steps").integer(0, INT64_MAX);
+  if (const auto phis = entry.phi.find(cell.place.scenario); reader.has("phi"))
+    reader.at("phi").integer(0, phis == entry.phi.end() ? 0 : static_cast<long long>(phis->size()) - 1);
   return cell;
 }
 

@@ -10,6 +10,7 @@
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/job/job.hpp>
 #include <lgabench/job/worker.hpp>
+#include <lgabench/leaderboard/fields.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/statistics/results.hpp>
 
@@ -59,14 +60,12 @@ EntryScenes chosen_scenes(const Entry& entry) {
 }
 
 EntryScene read_scene(const JsonReader& reader, const std::string& which, const Entry& entry) {
-  reader.only({"cell", "arm", "index", "command", "sha256"});
-  EntryScene scene{reader.at("cell").string(), reader.at("arm").string(), 0, reader.at("command").string(),
-                   reader.at("sha256").string()};
+  const EntryScene scene = value_of<EntryScene>(reader);
   const auto cell = find_cell(entry, scene.cell);
   if (cell == entry.cells.end()) reader.at("cell").fail("a cell of the entry");
   const auto letters = cell->outcomes.find(scene.arm);
   if (letters == cell->outcomes.end()) reader.at("arm").fail("an arm of the cell");
-  scene.index = static_cast<int>(reader.at("index").integer(0, static_cast<long long>(letters->second.size()) - 1));
+  reader.at("index").integer(0, static_cast<long long>(letters->second.size()) - 1);
   if (!is_end(which, letters->second[static_cast<std::size_t>(scene.index)]))
     reader.at("index").fail(which == "best" ? "an episode that succeeded" : "an episode that failed");
   return scene;
@@ -87,12 +86,7 @@ Json read_scenes_file(const fs::path& board, const std::function<bool(const std:
 void write_scenes(const fs::path& board, const BoardScenes& scenes) {
   Json json = Json::object();
   for (const auto& [entry, own] : scenes)
-    for (const auto& [which, scene] : own)
-      json[entry][which] = {{"cell", scene.cell},
-                            {"arm", scene.arm},
-                            {"index", scene.index},
-                            {"command", scene.command},
-                            {"sha256", scene.sha256}};
+    for (const auto& [which, scene] : own) json[entry][which] = json_of(scene);
   write_file(board / scenes_file, json.dump(1) + "\n");
 }
 
@@ -105,6 +99,14 @@ const Episode* same_end(const std::string& which, const std::string& letters, co
 }
 
 }  // namespace
+
+void fields(EntryScene& scene, Fields& field) {
+  field("cell", scene.cell);
+  field("arm", scene.arm);
+  field("index", scene.index);
+  field("command", scene.command);
+  field("sha256", scene.sha256);
+}
 
 fs::path scene_picture(const std::string& entry, const std::string& which) {
   return fs::path(scenes_directory) / fmt::format("{}-{}.png", entry, which);

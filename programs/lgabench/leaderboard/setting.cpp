@@ -3,25 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include <lgabench/core/hash.hpp>
+#include <lgabench/leaderboard/fields.hpp>
 
 namespace lgabench::leaderboard {
 namespace {
 
-constexpr long long most = std::numeric_limits<int>::max();
 constexpr long long most_cells = 10'000, most_episodes = 10'000, most_of_all = 5'000'000;  // of a cell's arm; of a row
-constexpr long long largest_seed = std::numeric_limits<std::int64_t>::max();
 
 // A name that may stand in a path.
-std::string name_at(const JsonReader& reader) {
+void expect_name(const JsonReader& reader) {
   const std::string name = reader.string();
   const bool plain =
       !name.empty() && name.size() <= 100 &&
       name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") == std::string::npos;
   if (!plain) reader.fail("letters, digits and _");
-  return name;
 }
 
 }  // namespace
@@ -45,37 +42,35 @@ std::vector<Place> Setting::places(bool learns) const {
   return all;
 }
 
-Json to_json(const Setting& setting) {
-  Json scenarios = Json::array();
-  for (const Setting::Scenario& s : setting.scenarios)
-    scenarios.push_back({{"id", s.id}, {"sha256", s.sha256}, {"arms", s.arms}});
-  return {{"suite", setting.suite},          {"preset", setting.preset},
-          {"scenarios", scenarios},          {"layouts", setting.layouts},
-          {"seeds", setting.seeds},          {"demonstrations", setting.demonstrations},
-          {"episodes", setting.episodes},    {"test_scenes", setting.test_scenes},
-          {"scene_seed", setting.scene_seed}};
+static void fields(Setting::Scenario& scenario, Fields& field) {
+  field("id", scenario.id);
+  field("sha256", scenario.sha256);
+  field("arms", scenario.arms);
 }
 
+void fields(Setting& setting, Fields& field) {
+  field("suite", setting.suite);
+  field("preset", setting.preset);
+  field("scenarios", setting.scenarios);
+  field("layouts", setting.layouts);
+  field("demonstrations", setting.demonstrations, at_least(1));
+  field("seeds", setting.seeds);
+  field("episodes", setting.episodes, within(1, most_episodes));
+  field("test_scenes", setting.test_scenes);
+  field("scene_seed", setting.scene_seed);
+}
+
+Json to_json(const Setting& setting) { return json_of(setting); }
+
 Setting read_setting(const JsonReader& reader) {
-  reader.only(
-      {"suite", "preset", "scenarios", "layouts", "seeds", "demonstrations", "episodes", "test_scenes", "scene_seed"});
-  Setting setting;
-  setting.suite = name_at(reader.at("suite"));
-  setting.preset = name_at(reader.at("preset"));
+  Setting setting = value_of<Setting>(reader);
+  for (const char* name : {"suite", "preset"}) expect_name(reader.at(name));
   for (const JsonReader& scenario : reader.at("scenarios").elements()) {
-    scenario.only({"id", "sha256", "arms"});
-    setting.scenarios.push_back({name_at(scenario.at("id")), scenario.at("sha256").string(), {}});
-    for (const JsonReader& arm : scenario.at("arms").elements()) setting.scenarios.back().arms.push_back(name_at(arm));
-    if (setting.scenarios.back().arms.empty()) scenario.at("arms").fail("at least one arm");
+    expect_name(scenario.at("id"));
+    for (const JsonReader& arm : scenario.at("arms").elements()) expect_name(arm);
+    if (scenario.at("arms").json().empty()) scenario.at("arms").fail("at least one arm");
   }
-  for (const JsonReader& layout : reader.at("layouts").elements()) setting.layouts.push_back(name_at(layout));
-  for (const JsonReader& n : reader.at("demonstrations").elements())
-    setting.demonstrations.push_back(static_cast<int>(n.integer(1, most)));
-  for (const JsonReader& seed : reader.at("seeds").elements())
-    setting.seeds.push_back(static_cast<std::uint64_t>(seed.integer(0, largest_seed)));
-  setting.episodes = static_cast<int>(reader.at("episodes").integer(1, most_episodes));
-  setting.test_scenes = read_test_scenes(reader.at("test_scenes"));
-  setting.scene_seed = static_cast<std::uint64_t>(reader.at("scene_seed").integer(0, largest_seed));
+  for (const JsonReader& layout : reader.at("layouts").elements()) expect_name(layout);
   for (const char* list : {"scenarios", "layouts", "demonstrations", "seeds"})
     if (reader.at(list).json().empty()) reader.at(list).fail("at least one value");
   const auto size = [](const auto& list) {
