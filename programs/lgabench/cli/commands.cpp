@@ -52,7 +52,6 @@ void add_help(CLI::App& app) {
 
 void add_commands(CLI::App& app, int& exit) {
   app.formatter(help_formatter({first_commands.begin(), first_commands.end()}, reference));
-  app.set_help_all_flag("--help-all", "Print every command, environment variable and exit status, and exit");
   app.footer(examples);
   app.require_subcommand(0, 1);  // a word behind a command is its own, also where it reads like another command
   add_list(app, exit);
@@ -80,6 +79,8 @@ void add_commands(CLI::App& app, int& exit) {
 }
 
 void arrange_commands(CLI::App& app) {
+  // Not before: commands that are added later would have it too.
+  app.set_help_all_flag("--help-all", "Print every command, environment variable and exit status, and exit");
   const std::pair<const char*, std::vector<const char*>> titles[] = {
       {"To look around", {"list", "help", "info", "select", "answers", "render", "demos", "replay"}},
       {"To run and to compare", {"run", "open", "report", "rescore", "compare", "verify", "attribute"}},
