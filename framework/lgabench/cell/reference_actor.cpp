@@ -17,15 +17,15 @@
 namespace lgabench {
 namespace {
 
-Action oracle(const Environment& environment, const Scene&, const Observation&) { return environment.expert_action(); }
+Move oracle(const Environment& environment, const Given&) { return environment.expert_action(); }
 
 using Instances = std::vector<Instance>;
 
 // What can be seen and taken.
-Instances visible(const Scene& scene, const Observation& observation) {
-  const SceneObject* goal = scene.find(role::goal);
+Instances visible(const Given& given) {
+  const SceneObject* goal = given.scene.find(role::goal);
   Instances all;
-  for (const Instance& instance : observation.instances)
+  for (const Instance& instance : given.observation().instances)
     if (instance.pixels > 0 && !(goal && instance.id == goal->instance_id)) all.push_back(instance);
   if (all.empty()) throw MethodError("no object is visible");
   return all;
@@ -42,12 +42,12 @@ Action any_of(const Instances& some, const char* row, const Environment& environ
   return environment.expert_action_for(drawn(some, row, scene).id);
 }
 
-Action random_object(const Environment& environment, const Scene& scene, const Observation& observation) {
-  return any_of(visible(scene, observation), "random_object", environment, scene);
+Move random_object(const Environment& environment, const Given& given) {
+  return any_of(visible(given), "random_object", environment, given.scene);
 }
 
-Action most_shared(const Environment& environment, const Scene& scene, const Observation& observation) {
-  const Instances all = visible(scene, observation);
+Move most_shared(const Environment& environment, const Given& given) {
+  const Instances all = visible(given);
   int most = 0;
   Instances some;
   for (const Instance& one : all) {
@@ -57,7 +57,7 @@ Action most_shared(const Environment& environment, const Scene& scene, const Obs
     if (shared >= most) some.push_back(one);
     most = std::max(most, shared);
   }
-  return any_of(some, "most_shared", environment, scene);
+  return any_of(some, "most_shared", environment, given.scene);
 }
 
 using Pairs = std::set<std::pair<std::string, std::string>>;  // of types and textures
@@ -67,14 +67,14 @@ Actor never_demonstrated(const DemonstratedScenes& demonstrated) {
   for (const Scene& scene : demonstrated.scenes)
     for (const SceneObject& o : scene.objects)
       if (o.role == role::target) shown.emplace(o.object_type, o.texture);
-  return [shown](const Environment& environment, const Scene& scene, const Observation& observation) {
-    const Instances all = visible(scene, observation);
+  return {[shown](const Environment& environment, const Given& given) {
+    const Instances all = visible(given);
     Instances some;
     std::copy_if(all.begin(), all.end(), std::back_inserter(some), [&shown](const Instance& one) {
       return shown.count({one.object_type, one.texture}) == 0;
     });
-    return Move(any_of(some.empty() ? all : some, "never_demonstrated", environment, scene));
-  };
+    return Move(any_of(some.empty() ? all : some, "never_demonstrated", environment, given.scene));
+  }};
 }
 
 // How often demonstrations took, or led to, objects of a type and of a texture.
@@ -119,30 +119,31 @@ Actor by_demonstrations(const std::string& row, Extreme which, const Demonstrate
     all.add(scene, shown.second);
     if (which == Extreme::most) of_command[scene.command].add(scene, shown.second);
   }
-  return [=](const Environment& environment, const Scene& scene, const Observation& observation) {
+  return {[=](const Environment& environment, const Given& given) {
+    const Scene& scene = given.scene;
     const auto of_its_own = of_command.find(scene.command);
     const Demonstrated& demonstrated = of_its_own == of_command.end() ? all : of_its_own->second;
-    Instances seen = visible(scene, observation);
+    Instances seen = visible(given);
     const Instance object = drawn(extreme(seen, demonstrated.taken, which), row, scene);
     Action action = environment.expert_action_for(object.id);
     seen.erase(std::remove_if(seen.begin(), seen.end(), [&](const Instance& one) { return one.id == object.id; }),
                seen.end());
     if (shown.actions.stations.all.empty() || shown.second.empty() || seen.empty()) return Move(action);
     const Instance receiver = drawn(extreme(seen, demonstrated.received, which), row + "/" + shown.second, scene);
-    if (const auto at = seen_at(shown.actions, observation, receiver.id)) {
+    if (const auto at = seen_at(shown.actions, given.observation(), receiver.id)) {
       const Stations& stations = shown.actions.stations;
       action = led_to(stations, nearest_station(stations, *at), std::move(action));
     }
     return Move(action);
-  };
+  }};
 }
 
 }  // namespace
 
 Actor reference_actor(const std::string& id, const DemonstratedScenes& shown) {
-  if (id == "oracle") return oracle;
-  if (id == "random_object") return random_object;
-  if (id == "most_shared") return most_shared;
+  if (id == "oracle") return {oracle};
+  if (id == "random_object") return {random_object};
+  if (id == "most_shared") return {most_shared};
   if (id == "never_demonstrated") return never_demonstrated(shown);
   if (id == "most_demonstrated") return by_demonstrations(id, Extreme::most, shown);
   if (id == "least_demonstrated") return by_demonstrations(id, Extreme::least, shown);

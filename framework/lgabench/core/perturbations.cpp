@@ -20,7 +20,7 @@ std::vector<BodyVariants> bodies_of_arms(const Scenario& scenario) {
   for (const Arm& arm : scenario.tests) {
     if (!arm.perturbation) continue;
     BodyVariants& of_arm = all.emplace_back();
-    for (const PerturbationAxis* axis : axes_of(scenario, *arm.perturbation)) {
+    for (const PerturbationAxis* axis : arm.axes) {
       if (!axis->bodies) continue;
       const BodyVariants own = axis->bodies(arm.perturbation->level);
       if (own.scales.size() > 1) of_arm.scales = own.scales;
@@ -188,8 +188,7 @@ int more_bodies(const Scenario& scenario) {
 
 Scene perturbed(Scene scene, const Scenario& scenario, std::optional<std::uint64_t> training_seed) {
   const Arm& arm = scenario.arm(scene.arm);
-  if (!arm.perturbation) return scene;
-  for (const PerturbationAxis* axis : axes_of(scenario, *arm.perturbation)) {
+  for (const PerturbationAxis* axis : arm.axes) {
     if (!axis->change) continue;
     // Its own statement: as an argument it could read the scene after the move.
     const RandomStream stream = perturbation_stream(axis->id, scene, training_seed);
@@ -230,16 +229,13 @@ void expect_shown(const JsonReader& perturbation, const std::vector<const Pertur
 
 const PerturbationAxis* instructing_axis(const Scenario& scenario) {
   for (const Arm& arm : scenario.tests)
-    if (arm.perturbation)
-      for (const PerturbationAxis* axis : axes_of(scenario, *arm.perturbation))
-        if (axis->other) return axis;
+    for (const PerturbationAxis* axis : arm.axes)
+      if (axis->other) return axis;
   return nullptr;
 }
 
 int command_given(const Scene& scene, const Scenario& scenario, std::optional<std::uint64_t> training_seed) {
-  const std::optional<Perturbation>& perturbation = scenario.arm(scene.arm).perturbation;
-  if (!perturbation) return scene.command;
-  for (const PerturbationAxis* axis : axes_of(scenario, *perturbation)) {
+  for (const PerturbationAxis* axis : scenario.arm(scene.arm).axes) {
     if (!axis->other) continue;
     RandomStream stream = perturbation_stream(axis->id, scene, training_seed);
     std::vector<int> added;
