@@ -162,11 +162,10 @@ std::string lacking(const Scenario& scenario, const Perturbation& perturbation) 
 
 std::vector<const PerturbationAxis*> axes_of(const Scenario& scenario, const Perturbation& perturbation) {
   std::vector<const PerturbationAxis*> axes = axes_named(perturbation.axis, scenario.axes);
-  axes.erase(std::remove_if(axes.begin(), axes.end(),
-                            [&](const PerturbationAxis* axis) {
-                              return !lacking(scenario, {axis->id, perturbation.level}).empty();
-                            }),
-             axes.end());
+  const auto is_lacking = [&](const PerturbationAxis* axis) {
+    return axis->lacks && !axis->lacks(scenario, perturbation.level).empty();
+  };
+  axes.erase(std::remove_if(axes.begin(), axes.end(), is_lacking), axes.end());
   return axes;
 }
 
