@@ -36,7 +36,8 @@ class Coding {
       double low = all[0][k], high = low;
       for (const auto& one : all) {
         mean_[k] += one[k] / static_cast<double>(all.size());
-        low = std::min(low, one[k]), high = std::max(high, one[k]);
+        low = std::min(low, one[k]);
+        high = std::max(high, one[k]);
       }
       if (high - low > 1e-4) varies_.push_back(k);
     }
@@ -63,9 +64,10 @@ class Coding {
     for (const auto& turn : space_.rotations) {
       const double angle = std::atan2(all[at], all[at + 1]);
       at += 2;
-      if (turn.size() == 2)
-        action[turn[0]] = std::cos(angle), action[turn[1]] = std::sin(angle);
-      else
+      if (turn.size() == 2) {
+        action[turn[0]] = std::cos(angle);
+        action[turn[1]] = std::sin(angle);
+      } else
         action[turn[2]] = std::sin(angle / 2),
         action[turn[3]] = std::cos(angle / 2);  // about z, which all tasks turn about
     }

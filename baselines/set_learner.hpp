@@ -19,7 +19,12 @@ class Moments {
 
   void add(int row, int column, lgabench::PictureSize size) {
     const double down = 2 * (row + .5) / size.rows - 1, across = 2 * (column + .5) / size.columns - 1;
-    n_ += 1, x_ += down, y_ += across, xx_ += down * down, yy_ += across * across, xy_ += down * across;
+    n_ += 1;
+    x_ += down;
+    y_ += across;
+    xx_ += down * down;
+    yy_ += across * across;
+    xy_ += down * across;
   }
   double counted() const { return n_; }
   std::array<double, numbers> result() const {

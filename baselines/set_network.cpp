@@ -34,7 +34,8 @@ class Objects : public SetLearner {
         if (id == 0) continue;
         Pixels& of = instances[id];
         of.moments.add(r, c, size_);
-        of.sums[0] += role > 0, of.sums[1] += role < 0;
+        of.sums[0] += role > 0;
+        of.sums[1] += role < 0;
         const float* colour = samples.picture(2, row) + static_cast<std::size_t>(pixel) * colours;
         for (std::size_t k = 0; k < colours; ++k) of.sums[roles + k] += colour[k];
       }

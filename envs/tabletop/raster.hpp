@@ -25,11 +25,13 @@ class Camera {
     constexpr Vec2 middle{(Workspace::x_max - Workspace::x_min) / 2, (Workspace::y_max - Workspace::y_min) / 2};
     const double turn = std::copysign(norm(view.turn_rad), view.turn_rad.x);
     const double cosine = std::cos(turn), sine = std::sin(turn), zoom = view.zoom;
-    along_ = zoom * cosine / row_m, across_ = zoom * sine / row_m;
+    along_ = zoom * cosine / row_m;
+    across_ = zoom * sine / row_m;
     const Vec2 seen = middle + Vec2{view.shift_m.y, view.shift_m.x};  // in the picture's middle, from the corner
     first_ = {rows / 2. - .5 - along_ * seen.x - across_ * seen.y,
               columns / 2. - .5 + across_ * seen.x - along_ * seen.y};
-    along_m_ = row_m * cosine / zoom, across_m_ = row_m * sine / zoom;
+    along_m_ = row_m * cosine / zoom;
+    across_m_ = row_m * sine / zoom;
     corner_ =
         Vec2{Workspace::x_min, Workspace::y_min} + (seen - Vec2{along_m_ * (rows / 2.) - across_m_ * (columns / 2.),
                                                                 across_m_ * (rows / 2.) + along_m_ * (columns / 2.)});

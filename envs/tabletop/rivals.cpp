@@ -62,7 +62,8 @@ class Table {
       const auto i = static_cast<std::size_t>(order[k]);
       objects_[i] = placed[k];
       const Vec2 at = in_picture(placed[k].position_m.x, placed[k].position_m.y);
-      things[i].row = at.x, things[i].column = at.y;
+      things[i].row = at.x;
+      things[i].column = at.y;
     }
     return true;
   }

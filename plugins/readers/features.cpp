@@ -48,7 +48,8 @@ void add_waves(Features& all, const std::vector<cv::Point>& outline, cv::Point2d
     double real = 0, imaginary = 0;
     for (int i = 0; i < rays; ++i) {
       const double turn = 2 * pi * wave * i / rays, r = reach[static_cast<std::size_t>(i)];
-      real += r * std::cos(turn), imaginary += r * std::sin(turn);
+      real += r * std::cos(turn);
+      imaginary += r * std::sin(turn);
     }
     add(all, mean > 0 ? std::sqrt(real * real + imaginary * imaginary) / (rays * mean) : 0);
   }
@@ -137,10 +138,12 @@ std::vector<float> shape_features(const Picture& picture, std::uint8_t id) {
   for (std::size_t i = 0; i < outlines.size(); ++i) {
     const double of = cv::contourArea(outlines[i]);
     if (tree[i][3] >= 0) {
-      holes += of > 2, in_holes += of;
+      holes += of > 2;
+      in_holes += of;
       continue;
     }
-    if (of > most) most = of, largest = i;
+    if (of > most) most = of;
+    largest = i;
   }
   const std::vector<cv::Point>& outline = outlines[largest];
   std::vector<cv::Point> hull;
@@ -194,7 +197,9 @@ std::vector<float> surface_features(const Picture& picture, std::uint8_t id) {
       const int gx = gx_of.at<std::int16_t>(row, column), gy = gy_of.at<std::int16_t>(row, column);
       const double strength = std::sqrt(gx * gx + gy * gy);
       edges.push_back(static_cast<int>(strength));
-      xx += gx * gx, yy += gy * gy, xy += gx * gy;
+      xx += gx * gx;
+      yy += gy * gy;
+      xy += gx * gy;
       const double turn = (std::atan2(gy, gx) + pi) / pi * directions;  // opposite directions are one
       turns[static_cast<std::size_t>(turn) % directions] += strength;
       // How many of eight neighbours two pixels away are lighter, and how many alike.
@@ -205,7 +210,8 @@ std::vector<float> surface_features(const Picture& picture, std::uint8_t id) {
           if ((dx == 0 && dy == 0) || y < 0 || x < 0 || y >= within.rows || x >= within.cols) continue;
           if (!within.at<std::uint8_t>(y, x)) continue;
           const int difference = lab_of.at<cv::Vec3b>(y, x)[0] - lab[0];
-          lighter += difference > 6, alike += std::abs(difference) <= 6;
+          lighter += difference > 6;
+          alike += std::abs(difference) <= 6;
         }
       neighbours[static_cast<std::size_t>(lighter)] += 1;
       equal[static_cast<std::size_t>(alike)] += 1;

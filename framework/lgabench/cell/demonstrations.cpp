@@ -21,10 +21,14 @@ void turn(Action& action, const std::vector<std::size_t>& rotation, double by_ra
   if (rotation.size() == 4) {
     const Quat q =
         from_yaw(by_rad) * Quat{action[rotation[0]], action[rotation[1]], action[rotation[2]], action[rotation[3]]};
-    action[rotation[0]] = q.x, action[rotation[1]] = q.y, action[rotation[2]] = q.z, action[rotation[3]] = q.w;
+    action[rotation[0]] = q.x;
+    action[rotation[1]] = q.y;
+    action[rotation[2]] = q.z;
+    action[rotation[3]] = q.w;
   } else {
     const Vec2 turned = rotated(Vec2{action[rotation[0]], action[rotation[1]]}, by_rad);
-    action[rotation[0]] = turned.x, action[rotation[1]] = turned.y;
+    action[rotation[0]] = turned.x;
+    action[rotation[1]] = turned.y;
   }
 }
 

@@ -122,8 +122,12 @@ PersonGrammar read_person_grammar(const Json& json, const FeatureSpace& space, c
   Names names{"any"};
   for (const Place rule : all_places) names.push_back(to_string(rule));
   const auto places = read_shares(prior.at("places"), names);
-  grammar.all = types[0], grammar.one = types[1], grammar.two = types[2];
-  grammar.any = looks[0], grammar.is = looks[1], grammar.is_not = looks[2];
+  grammar.all = types[0];
+  grammar.one = types[1];
+  grammar.two = types[2];
+  grammar.any = looks[0];
+  grammar.is = looks[1];
+  grammar.is_not = looks[2];
   grammar.anywhere = places[0];
   for (std::size_t i = 0; i < all_places.size(); ++i) grammar.places.emplace_back(all_places[i], places[i + 1]);
   if (!own_space || !reader.has("hints")) return grammar;

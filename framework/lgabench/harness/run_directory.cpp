@@ -114,8 +114,10 @@ fs::path earlier_run(const fs::path& wanted, const std::string& suffix, const Js
       continue;
     try {
       const RunRecord run = read_run_record(entry.path());
-      if (run.request == request && (last.empty() || run.started > last_started))
-        last = entry.path(), last_started = run.started;
+      if (run.request == request && (last.empty() || run.started > last_started)) {
+        last = entry.path();
+        last_started = run.started;
+      }
     } catch (const InputError&) {  // no run of ours
     }
   }

@@ -84,7 +84,9 @@ void write_at(const Descriptor& file, std::size_t offset, const void* data, std:
     const ssize_t n = ::pwrite(file.fd, bytes, size, static_cast<off_t>(offset));
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) fail("pwrite");
-    bytes += n, offset += static_cast<std::size_t>(n), size -= static_cast<std::size_t>(n);
+    bytes += n;
+    offset += static_cast<std::size_t>(n);
+    size -= static_cast<std::size_t>(n);
   }
 }
 

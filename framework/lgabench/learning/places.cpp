@@ -33,7 +33,10 @@ Field::Field(const ActionSpace& actions) {
   if (actions.places.empty()) throw InputError("actions: expected a place in the picture among their numbers");
   const ActionNumber &down = actions.numbers[actions.places[0].down],
                      &across = actions.numbers[actions.places[0].across];
-  x_low = down.low, x_high = down.high, y_low = across.low, y_high = across.high;
+  x_low = down.low;
+  x_high = down.high;
+  y_low = across.low;
+  y_high = across.high;
 }
 
 Vec2 Field::middle_of(PictureSize picture, int row, int column) const {

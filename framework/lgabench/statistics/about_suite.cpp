@@ -20,7 +20,8 @@ std::string AboutSuite::arm_title(const std::string& name) const {
   std::string text = name, longest;
   for (const auto& [arm, ignored] : arms) {
     if (name.rfind(arm + "_", 0) != 0 || arm.size() <= longest.size()) continue;
-    longest = arm, text = arm_title(arm) + ", " + arm_title(name.substr(arm.size() + 1));
+    longest = arm;
+    text = arm_title(arm) + ", " + arm_title(name.substr(arm.size() + 1));
   }
   return text;
 }

@@ -211,7 +211,9 @@ std::vector<double> slower_by(const Seconds& slow, const Seconds& fast, std::set
 
 void test_seconds(Claim& claim, const PaperClaim& paper, const Field& field) {
   ClaimedDifference d;
-  d.above = paper.above.front().id, d.below = paper.below.front().id, d.unit = "seconds";
+  d.above = paper.above.front().id;
+  d.below = paper.below.front().id;
+  d.unit = "seconds";
   const Seconds slow = seconds_of(field, d.above), fast = seconds_of(field, d.below);
   std::set<std::string> scenarios;
   const std::vector<double> differences = slower_by(slow, fast, scenarios);
@@ -246,11 +248,14 @@ void conclude(Claim& claim, const Field& field) {
 
 Claim test_claim(const PaperClaim& paper, const std::string& suite, const Field& field) {
   Claim claim;
-  claim.id = paper.id, claim.statement = paper.statement;
-  claim.layout = field.layout, claim.engine = field.engine;
-  if (!paper.suite.empty() && paper.suite != suite)
-    claim.needs = paper.suite, claim.reason = fmt::format("needs a run of suite {}", paper.suite);
-  else if (paper.test == PaperClaim::Test::ordering)
+  claim.id = paper.id;
+  claim.statement = paper.statement;
+  claim.layout = field.layout;
+  claim.engine = field.engine;
+  if (!paper.suite.empty() && paper.suite != suite) {
+    claim.needs = paper.suite;
+    claim.reason = fmt::format("needs a run of suite {}", paper.suite);
+  } else if (paper.test == PaperClaim::Test::ordering)
     test_ordering(claim, paper, field);
   else if (paper.test == PaperClaim::Test::equivalence)
     test_equivalence(claim, paper, field);
@@ -265,21 +270,28 @@ Field only(const Field& field, const std::vector<std::string>& scenarios) {
   Field some;
   for (const CellResult* cell : field.cells())
     if (contains(scenarios, cell->scenario)) some.add(*cell);
-  some.layout = field.layout, some.engine = field.engine;
+  some.layout = field.layout;
+  some.engine = field.engine;
   return some;
 }
 
 Claim measured_claim(const SuiteClaim& own, const Field& all) {
   const Field field = only(all, own.scenarios);
   Claim claim;
-  claim.id = own.id, claim.statement = own.statement, claim.refuted_if = own.refuted_if;
-  claim.layout = all.layout, claim.engine = all.engine;
+  claim.id = own.id;
+  claim.statement = own.statement;
+  claim.refuted_if = own.refuted_if;
+  claim.layout = all.layout;
+  claim.engine = all.engine;
   const std::vector<int> every(field.demonstrations.begin(), field.demonstrations.end());
   for (const std::string& arm : own.arms.empty() ? field.arms : own.arms)
     for (const int n : own.demonstrations.empty() ? every : own.demonstrations) {
       if (!contains(field.arms, arm)) {
         ClaimedDifference missing;
-        missing.above = own.above, missing.below = own.below, missing.arm = arm, missing.demonstrations = n;
+        missing.above = own.above;
+        missing.below = own.below;
+        missing.arm = arm;
+        missing.demonstrations = n;
         missing.these.reason = missing.alike.reason = "no arm " + arm;
         claim.differences.push_back(missing);
       } else {
@@ -328,8 +340,10 @@ std::vector<Claim> test_own(const std::vector<SuiteClaim>& own, const Field& fie
 
 Claim difference_in(const Field& field, const std::string& above, const std::string& below) {
   Claim claim;
-  claim.id = "A-B", claim.statement = fmt::format("{} above {}", display_name(above), display_name(below));
-  claim.layout = field.layout, claim.engine = field.engine;
+  claim.id = "A-B";
+  claim.statement = fmt::format("{} above {}", display_name(above), display_name(below));
+  claim.layout = field.layout;
+  claim.engine = field.engine;
   for (const std::string& row : {above, below})
     if (field.rows.count(row) == 0) claim.reason = fmt::format("no row {}", row);
   for (const std::string& arm : field.arms)

@@ -77,7 +77,9 @@ void sum_up(ClaimedDifference& d, const PairedRow& pairs, const std::set<long lo
   d.policies = pairs.policies();
   d.participants = pairs.participants();
   Change& change = d.these.change.emplace(pairs.change(stream));
-  change.difference *= reach, change.interval.low *= reach, change.interval.high *= reach;
+  change.difference *= reach;
+  change.interval.low *= reach;
+  change.interval.high *= reach;
   d.alike = over_scenarios(d.by_scenario);
 }
 
@@ -126,7 +128,8 @@ bool has_arm(const CellResult& cell, const std::string& arm) {
 ClaimedDifference measured(const Field& field, const std::string& claim, const ClaimedMethod& above,
                            const ClaimedMethod& below, const std::string& arm, int n) {
   ClaimedDifference missing;
-  missing.arm = arm, missing.demonstrations = n;
+  missing.arm = arm;
+  missing.demonstrations = n;
   for (const auto& [row, method] : {std::pair(&missing.above, &above), {&missing.below, &below}}) {
     *row = find_row(field, *method);
     const bool found = field.find(*row, n) != nullptr;
@@ -140,7 +143,10 @@ ClaimedDifference measured(const Field& field, const std::string& claim, const C
 ClaimedDifference measured_rows(const Field& field, const std::string& claim, const std::string& above,
                                 const std::string& below, const std::string& arm, int n) {
   ClaimedDifference d;
-  d.above = above, d.below = below, d.arm = arm, d.demonstrations = n;
+  d.above = above;
+  d.below = below;
+  d.arm = arm;
+  d.demonstrations = n;
   const Field::Policies &high = *field.find(d.above, n), &low = *field.find(d.below, n);
   Field::Policies all = high;
   all.insert(low.begin(), low.end());
@@ -183,7 +189,10 @@ ClaimedDifference measured_rows(const Field& field, const std::string& claim, co
 ClaimedDifference measured_slope(const Field& field, const SuiteClaim& claim, const std::string& arm, int n) {
   constexpr double per = .1;
   ClaimedDifference d;
-  d.above = claim.above, d.below = claim.below, d.arm = arm, d.demonstrations = n;
+  d.above = claim.above;
+  d.below = claim.below;
+  d.arm = arm;
+  d.demonstrations = n;
   d.unit = fmt::format("success per {} of {}", per, claim.option);
   std::vector<double> weights = slope_weights(claim.levels);
   double reach = 0;

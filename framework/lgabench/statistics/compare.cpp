@@ -109,7 +109,11 @@ std::vector<ComparedRow> compare_rows(const std::vector<CellPair>& pairs) {
       const auto place = static_cast<std::size_t>(std::find(a.arms.begin(), a.arms.end(), arm) - a.arms.begin());
       Draft& draft = drafts[{a.layout, a.engine, place, a.kind, display_rank(b.method), b.method, a.demonstrations}];
       ComparedRow& row = draft.row;
-      row.layout = a.layout, row.engine = a.engine, row.method = b.method, row.method_a = a.method, row.kind = a.kind;
+      row.layout = a.layout;
+      row.engine = a.engine;
+      row.method = b.method;
+      row.method_a = a.method;
+      row.kind = a.kind;
       row.arm = arm;
       row.demonstrations = a.demonstrations;
       const PolicyPair policies = pair_policies(a, b, arm);

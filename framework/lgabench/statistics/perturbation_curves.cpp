@@ -200,7 +200,10 @@ std::vector<PerturbationCurve> curves_of(const RunResults& run, const Table& tab
     auto curve = std::find_if(curves.begin(), curves.end(), same);
     if (curve == curves.end()) {
       PerturbationCurve one;
-      one.layout = row.layout, one.engine = row.engine, one.method = row.method, one.kind = row.kind;
+      one.layout = row.layout;
+      one.engine = row.engine;
+      one.method = row.method;
+      one.kind = row.kind;
       one.axis = row.perturbation->axis;
       one.demonstrations = row.demonstrations;
       const auto axis = axis_of(run, one.axis);

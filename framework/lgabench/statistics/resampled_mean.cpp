@@ -49,7 +49,8 @@ bool ResampledMean::pays(const Outcomes::Sample& sample, int resamples) {
     scenes = std::max(scenes, unit.size());
     for (const double value : unit) {
       if (value != std::trunc(value)) return false;
-      low = std::min(low, value), high = std::max(high, value);
+      low = std::min(low, value);
+      high = std::max(high, value);
     }
   }
   constexpr double additions_per_draw = 4;  // measured, roughly

@@ -18,7 +18,7 @@
 #include <lgabench/core/suggest.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/counted_progress.hpp>
-#include <lgabench/harness/expand.hpp>
+#include <lgabench/harness/suite_scenario.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -223,7 +223,7 @@ void print_reading_scores(const Suite& suite, Truth truth, const ReadingArgument
         if (const std::string why = why_not_read(scenario, by_reader); !why.empty())
           throw InputError(fmt::format("{}: scenario {}: {}", suite.id, id, why));
         const ReadPicture read = reading_of(scenario, by_reader);
-        const EnvironmentType& environment = find_environment(scenario.environment);
+        const EnvironmentType& environment = *scenario.environment;
         for (const Arm& arm : scenario.tests) {
           if (!a.arms.empty() && !contains(a.arms, arm.id)) continue;
           auto row = std::find_if(arms.begin(), arms.end(), [&](const auto& one) { return one.first == arm.id; });

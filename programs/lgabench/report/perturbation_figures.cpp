@@ -54,7 +54,8 @@ Chart axis_chart(const Material& material, const Part& part, const std::string& 
   const double last = at.rbegin()->first;
   chart.left = -.08 * last;
   chart.right = 1.08 * last;
-  chart.width = 460, chart.height = 300;
+  chart.width = 460;
+  chart.height = 300;
   chart.file = fmt::format("perturbations_{}_{}", slug(axis), part.file());
   chart.title = axis;
   chart.subtitle = fmt::format("{}, {}", material.about.title, part.title());

@@ -220,7 +220,8 @@ Charts scenario_charts(const Material& material, const Table& table, const std::
     Chart chart = chart_of(material, table, table.arms.front(), scenario);
     chart.title = table.title(scenario);
     chart.subtitle = chart.axis = chart.values = "";
-    chart.width = 300, chart.height = 180;
+    chart.width = 300;
+    chart.height = 180;
     chart.legend = false;
     all.charts.push_back(std::move(chart));
   }

@@ -78,7 +78,8 @@ Chart chart_of(const Material& material, const std::string& name, const std::vec
   if (powers) {
     for (Series& series : chart.series)
       for (ChartPoint& point : series.points) point.y = std::log10(point.y);
-    low = std::log10(low), high = std::log10(high);
+    low = std::log10(low);
+    high = std::log10(high);
   }
   chart.levels = powers ? power_ticks(low, high) : round_ticks(low, high);
   chart.bottom = chart.levels.front().at;
@@ -126,7 +127,8 @@ Section learning_curves(const Material& material) {
         if (one.series.empty()) continue;
         one.title = names.size() > 1 ? fmt::format("{}, {}", scenario, name) : scenario;
         one.alternative = fmt::format("{} along training: {}, {}", name, scenario, table.title());
-        one.width = 300, one.height = 200;
+        one.width = 300;
+        one.height = 200;
         one.legend = false;
         small.charts.push_back(std::move(one));
       }

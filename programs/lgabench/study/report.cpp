@@ -78,7 +78,8 @@ Chart seconds_chart(const StudyResults& results) {
                             results.record->kind == Kind::rehearsal ? fmt::format(" ({})", simulated_words) : "");
   chart.subtitle =
       fmt::format("{} people's means ± 1 standard error; grey: each person; hollow: the paper", results.used());
-  chart.width = 460, chart.height = 340;
+  chart.width = 460;
+  chart.height = 340;
   chart.legend = false;  // the conditions stand along the axis, and people need no names
   constexpr double left = .3, right = .7;
   chart.series = lines_of_people(results, left, right);

@@ -71,7 +71,8 @@ std::vector<ScaleResult> tlx_of(const StudyResults& results) {
       const Json &before = human.at(all[i].scale), &after = edited.at(all[i].scale);
       if (before.is_null() || after.is_null()) continue;
       all[i].values[0].push_back(before), all[i].values[1].push_back(after);
-      sums[0] += all[i].values[0].back(), sums[1] += all[i].values[1].back();
+      sums[0] += all[i].values[0].back();
+      sums[1] += all[i].values[1].back();
       ++answered;
     }
     if (answered + 1 != all.size()) continue;
@@ -156,8 +157,10 @@ void compare(StudyResults& results) {
                        mean_log(person, 0) - mean_log(person, 1)});
   }
   for (const std::size_t c : {0, 1}) {
-    if (!raw[c].empty())
-      results.seconds[c] = statistics::spread(raw[c]), results.active_s[c] = statistics::spread(active[c]);
+    if (!raw[c].empty()) {
+      results.seconds[c] = statistics::spread(raw[c]);
+      results.active_s[c] = statistics::spread(active[c]);
+    }
     if (!by_first[c].empty()) results.by_first[c] = statistics::spread(by_first[c]);
   }
   if (differences.size() >= 2) {
