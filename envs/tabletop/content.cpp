@@ -132,6 +132,42 @@ void read_meant(const Scenario& scenario, const JsonReader& file, const JsonRead
   }
 }
 
+// A scenario of persons says nothing else of its scenes.
+Content read_persons_content(const Scenario& scenario, const JsonReader& file, const JsonReader* scenes) {
+  if (scenario.as_method_asks) file.at("persons").fail("\"as_method_asks\": false in \"train\" beside it");
+  if (scenario.task != find_task("pick_and_place").id()) file.at("persons").fail("the task pick_and_place beside it");
+  for (const std::string& member : scenario_members(find_task(scenario.task)))
+    if (member != "persons" && file.has(member)) file.at(member).fail("no such member beside \"persons\"");
+  for (const std::string& member : scene_members(find_task(scenario.task)))
+    if (scenes && scenes->has(member)) scenes->at(member).fail("no such member beside \"persons\"");
+  Content content;
+  content.persons = read_persons(scenario, file);
+  content.distractors = {4, 4};
+  return content;
+}
+
+// `decoys`: of the scenario, for the scenes that ask for them.
+void read_decoys(const JsonReader& file, const JsonReader& scenes, const std::vector<FeatureSet>& decoys,
+                 Content& content) {
+  if (!scenes.has("decoys") || !scenes.at("decoys").boolean()) return;
+  for (const char* other : {"hard", "later_letters", "near_miss"})
+    if (scenes.has(other)) scenes.at(other).fail("no such member beside \"decoys\"");
+  if (decoys.empty()) scenes.at("decoys").fail("\"decoys\", a list of sets, in the scenario");
+  content.decoys = decoys;
+  content.unheard_decoys = file.has("unheard_decoys") && file.at("unheard_decoys").boolean() && scenes.has("unseen") &&
+                           scenes.at("unseen").boolean();
+}
+
+// Where the method says what is shown, the scenario does not.
+void expect_method_asks(const Scenario& scenario, const JsonReader& train, const Content& content) {
+  if (!scenario.as_method_asks) return;
+  if (content.target || content.second)
+    train.fail("\"as_method_asks\": false beside \"target\"" +
+               (scenario.second ? fmt::format(" or \"{}\"", scenario.second->id) : ""));
+  if (content.near_miss)  // else an answer would decide what is near
+    train.at("near_miss").fail("\"as_method_asks\": false beside it");
+}
+
 }  // namespace
 
 const Content& content_of(const SceneContent& scenes) { return dynamic_cast<const Content&>(scenes); }
@@ -157,18 +193,8 @@ std::vector<std::string> scene_members(const Task& task) {
 }
 
 Content read_content(const Scenario& scenario, const JsonReader& file, const JsonReader* scenes, bool training) {
+  if (file.has("persons") && file.at("persons").boolean()) return read_persons_content(scenario, file, scenes);
   Content content;
-  if (file.has("persons") && file.at("persons").boolean()) {
-    if (scenario.as_method_asks) file.at("persons").fail("\"as_method_asks\": false in \"train\" beside it");
-    if (scenario.task != find_task("pick_and_place").id()) file.at("persons").fail("the task pick_and_place beside it");
-    for (const std::string& member : scenario_members(find_task(scenario.task)))
-      if (member != "persons" && file.has(member)) file.at(member).fail("no such member beside \"persons\"");
-    for (const std::string& member : scene_members(find_task(scenario.task)))
-      if (scenes && scenes->has(member)) scenes->at(member).fail("no such member beside \"persons\"");
-    content.persons = read_persons(scenario, file);
-    content.distractors = {4, 4};
-    return content;
-  }
   if (training) content.distractors = {1, 1};
   content.by_meaning = !scenario.commands.front().truth.target.is_product() || file.has("near_miss_sets");
   if (file.has("never_distractor"))
@@ -178,22 +204,11 @@ Content read_content(const Scenario& scenario, const JsonReader& file, const Jso
     for (const JsonReader& set : file.at("decoys").elements()) decoys.push_back(read_feature_set(set, scenario.space));
   if (scenes) read_scenes(*scenes, scenario, content);
   read_meant(scenario, file, scenes, training, content);
-  if (scenes && scenes->has("decoys") && scenes->at("decoys").boolean()) {
-    for (const char* other : {"hard", "later_letters", "near_miss"})
-      if (scenes->has(other)) scenes->at(other).fail("no such member beside \"decoys\"");
-    if (decoys.empty()) scenes->at("decoys").fail("\"decoys\", a list of sets, in the scenario");
-    content.decoys = decoys;
-    content.unheard_decoys = file.has("unheard_decoys") && file.at("unheard_decoys").boolean() &&
-                             scenes->has("unseen") && scenes->at("unseen").boolean();
-  }
+  if (scenes) read_decoys(file, *scenes, decoys, content);
   if (scenes && scenes->has("members")) read_members(*scenes, file, scenario, training, content);
   if (scenes && scenes->has("cue")) content.cue = read_cue(*scenes, file, scenario, content, training);
   find_task(scenario.task).read(file, scenes, content);
-  if (training && scenes && scenario.as_method_asks && (content.target || content.second))
-    scenes->fail("\"as_method_asks\": false beside \"target\"" +
-                 (scenario.second ? fmt::format(" or \"{}\"", scenario.second->id) : ""));
-  if (training && scenes && content.near_miss && scenario.as_method_asks)  // else an answer would decide what is near
-    scenes->at("near_miss").fail("\"as_method_asks\": false beside it");
+  if (training && scenes) expect_method_asks(scenario, *scenes, content);
   return content;
 }
 

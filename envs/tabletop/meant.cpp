@@ -39,6 +39,13 @@ struct Draw {
     return truth.which && truth.which->of && truth.which->of->contains(one.type, one.texture);
   }
   bool belongs(const Features& one) const { return truth.belongs(one.type, one.texture); }
+  bool in_words(const Features& one) const { return content.words && content.words->belongs(one.type, one.texture); }
+  bool may_be_meant(const Features& one) const { return !undecided(one) && !reference(one); }
+  // Nothing that anybody could take for what is meant.
+  bool plain(const Features& one) const {
+    return may_be_meant(one) && !belongs(one) && !in_words(one) &&
+           !(content.cue && content.cue->look.contains(one.type, one.texture));
+  }
   bool near_miss(const Features& one) const {
     return std::any_of(content.near_miss_sets.begin(), content.near_miss_sets.end(),
                        [&one](const FeatureSet& set) { return set.contains(one.type, one.texture); });
@@ -68,61 +75,68 @@ SceneObject object(const Features& features, const Role& role) {
   return {features.type, features.texture, role, {}, 0, 0};
 }
 
+// The target and, in a misleading scene of a rule, a second object that belongs.
+std::vector<SceneObject> sample_belonging(Draw& draw, bool misleading, double widest_m) {
+  const Meaning& truth = draw.truth;
+  const auto may_be_meant = [&draw](const Features& one) { return draw.may_be_meant(one); };
+  Features target = draw.expect("a target", truth.sets, may_be_meant, widest_m);
+  if (!truth.which || !misleading) return {object(target, role::target)};
+  const bool in_order = truth.which->rule == Rule::first_in;
+  const auto place = [&truth](const Features& one) { return place_in_order(truth, one.type, one.texture); };
+  const auto another = [&](const Features& one) {
+    return draw.may_be_meant(one) && (!in_order || place(one) != place(target));
+  };
+  Features also = draw.expect("a second object that belongs", truth.sets, another, widest_m);
+  if (in_order && place(also) < place(target)) std::swap(target, also);
+  return {object(target, role::target), object(also, role::not_meant)};
+}
+
+SceneObject sample_near_miss(Draw& draw, double widest_m) {
+  const auto near = [&draw](const Features& one) { return draw.may_be_meant(one) && !draw.belongs(one); };
+  const Features one = draw.expect("a near miss", draw.content.near_miss_sets, near, widest_m);
+  return object(one, draw.in_words(one) ? role::not_meant : role::distractor);
+}
+
+// Beside these objects; nothing where none share alike with them.
+std::optional<std::vector<Features>> sample_alike(Draw& draw, const std::vector<SceneObject>& objects,
+                                                  const std::function<Features()>& distractor, double widest_m) {
+  constexpr int fresh = 3;
+  std::vector<Features> there, others;
+  for (const SceneObject& one : objects) there.push_back({one.object_type, one.texture});
+  for (int i = 0; i < fresh; ++i) others.push_back(distractor());
+  const auto may_be = [&](const Features& one) {
+    const bool another_near_miss = draw.truth.which && draw.near_miss(one);  // of which a rule would have to choose
+    return draw.plain(one) && !another_near_miss && fits(one.type, widest_m);
+  };
+  return sharing_alike(there, others, draw.content.distractors, may_be, draw.random);
+}
+
+std::optional<std::vector<Features>> sample_others(Draw& draw, const std::vector<SceneObject>& objects,
+                                                   double widest_m) {
+  const FeatureSet all{draw.scenario.space.object_types, draw.scenario.space.textures};
+  const auto plain = [&draw](const Features& one) { return draw.plain(one); };
+  const auto distractor = [&] { return draw.expect("a distractor", {all}, plain, widest_m); };
+  if (draw.content.near_miss) return sample_alike(draw, objects, distractor, widest_m);
+  const auto [fewest, most] = draw.content.distractors;
+  const int count = fewest + static_cast<int>(draw.random.below(static_cast<std::uint32_t>(most - fewest + 1)));
+  std::vector<Features> some;
+  for (int i = 0; i < count; ++i) some.push_back(distractor());
+  return some;
+}
+
 // Nothing where no further objects share alike with these.
 std::optional<std::vector<SceneObject>> sample(Draw& draw, double widest_m) {
-  const Content& content = draw.content;
-  const Meaning& truth = draw.truth;
-  const auto& which = truth.which;
-  const auto may_be_meant = [&draw](const Features& one) { return !draw.undecided(one) && !draw.reference(one); };
-  const auto place = [&truth](const Features& one) { return place_in_order(truth, one.type, one.texture); };
-  const bool misleading = draw.random.uniform() < content.misleading;
-
-  Features target = draw.expect("a target", truth.sets, may_be_meant, widest_m);
-  std::optional<Features> also_belongs;
-  if (which && misleading) {
-    const auto another = [&](const Features& one) {
-      return may_be_meant(one) && (which->rule != Rule::first_in || place(one) != place(target));
-    };
-    also_belongs = draw.expect("a second object that belongs", truth.sets, another, widest_m);
-    if (which->rule == Rule::first_in && place(*also_belongs) < place(target)) std::swap(target, *also_belongs);
-  }
-  std::vector<SceneObject> objects{object(target, role::target)};
-  if (also_belongs) objects.push_back(object(*also_belongs, role::not_meant));
+  constexpr double any_width = std::numeric_limits<double>::infinity();
+  const auto& which = draw.truth.which;
+  const auto anything = [](const Features&) { return true; };
+  const bool misleading = draw.random.uniform() < draw.content.misleading;
+  std::vector<SceneObject> objects = sample_belonging(draw, misleading, widest_m);
   if (which && which->of)
-    objects.push_back(object(
-        draw.expect(
-            "a reference", {*which->of}, [](const Features&) { return true; }, std::numeric_limits<double>::infinity()),
-        role::distractor));
-  if (misleading && !content.near_miss_sets.empty()) {
-    const auto near = [&](const Features& one) { return may_be_meant(one) && !draw.belongs(one); };
-    const Features one = draw.expect("a near miss", content.near_miss_sets, near, widest_m);
-    const bool in_words = content.words && content.words->belongs(one.type, one.texture);
-    objects.push_back(object(one, in_words ? role::not_meant : role::distractor));
-  }
-  const auto plain = [&](const Features& one) {
-    return may_be_meant(one) && !draw.belongs(one) &&
-           !(content.words && content.words->belongs(one.type, one.texture)) &&
-           !(content.cue && content.cue->look.contains(one.type, one.texture));
-  };
-  const FeatureSet all{draw.scenario.space.object_types, draw.scenario.space.textures};
-  if (content.near_miss) {
-    constexpr int fresh = 3;
-    std::vector<Features> there, others;
-    for (const SceneObject& one : objects) there.push_back({one.object_type, one.texture});
-    for (int i = 0; i < fresh; ++i) others.push_back(draw.expect("a distractor", {all}, plain, widest_m));
-    const auto may_be = [&](const Features& one) {
-      const bool another_near_miss = which && draw.near_miss(one);  // of which a rule would have to choose
-      return plain(one) && !another_near_miss && fits(one.type, widest_m);
-    };
-    const auto alike = sharing_alike(there, others, content.distractors, may_be, draw.random);
-    if (!alike) return std::nullopt;
-    for (const Features& one : *alike) objects.push_back(object(one, role::distractor));
-    return objects;
-  }
-  const auto [fewest, most] = content.distractors;
-  const int count = fewest + static_cast<int>(draw.random.below(static_cast<std::uint32_t>(most - fewest + 1)));
-  for (int i = 0; i < count; ++i)
-    objects.push_back(object(draw.expect("a distractor", {all}, plain, widest_m), role::distractor));
+    objects.push_back(object(draw.expect("a reference", {*which->of}, anything, any_width), role::distractor));
+  if (misleading && !draw.content.near_miss_sets.empty()) objects.push_back(sample_near_miss(draw, widest_m));
+  const auto distractors = sample_others(draw, objects, widest_m);
+  if (!distractors) return std::nullopt;
+  for (const Features& one : *distractors) objects.push_back(object(one, role::distractor));
   return objects;
 }
 

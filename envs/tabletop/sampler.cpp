@@ -145,69 +145,104 @@ std::vector<Features> sample_unheard_decoys(const Request& request, const Featur
   return decoys;
 }
 
-// docs/protocol.md, section 3: objects that don't satisfy the command.
-std::vector<Features> sample_distractors(const Request& request, const Features& target, RandomStream& random) {
-  const FeatureSpace& space = request.scenario.space;
-  const Content& content = request.content;
+// What distractors stay out of.
+std::vector<const FeatureSet*> excluded_sets(const Request& request) {
   std::vector<const FeatureSet*> excluded;
   const auto exclude = [&excluded](const Selection& meant) {
     for (const FeatureSet& set : meant.target.sets) excluded.push_back(&set);
     if (meant.second) excluded.push_back(&*meant.second);
   };
+  const Content& content = request.content;
   exclude(request.meant);
   if (content.outside_all_commands)
     for (const ScenarioCommand& command : request.scenario.commands) exclude(command.truth);
   if (content.cue) excluded.push_back(&content.cue->look);
   if (!request.training && content.never_distractor) excluded.push_back(&*content.never_distractor);
+  return excluded;
+}
 
-  // Where the earliest letter is asked for, a later one may stand beside it, never an earlier one or the same.
-  const bool earliest = content.later_letters && is_letter(target.type);
-  std::vector<std::string> later_letters;
-  std::vector<bool> allowed;
-  for (const std::string& type : space.object_types) {
+// The types that distractors may have. Where the earliest letter is asked for, a later one may stand beside it, never
+// an earlier one or the same.
+struct Types {
+  std::vector<bool> allowed;               // of the space's
+  std::vector<std::string> later_letters;  // none where no letter is asked for
+};
+
+Types types_beside(const Request& request, const Features& target) {
+  const bool earliest = request.content.later_letters && is_letter(target.type);
+  Types types;
+  for (const std::string& type : request.scenario.space.object_types) {
     const bool later = is_letter(type) && type > target.type, shown = can_show(type, request.widest_m());
-    allowed.push_back(shown && (!earliest || !is_letter(type) || later));
-    if (earliest && shown && later) later_letters.push_back(type);
+    types.allowed.push_back(shown && (!earliest || !is_letter(type) || later));
+    if (earliest && shown && later) types.later_letters.push_back(type);
   }
-  const auto others = outside(space, excluded, allowed);
-  std::vector<std::pair<std::size_t, std::size_t>> same_type, same_texture;
-  if (content.hard)
-    for (const auto& pair : others) {
-      if (space.object_types[pair.first] == target.type) same_type.push_back(pair);
-      if (space.textures[pair.second] == target.texture) same_texture.push_back(pair);
-    }
+  return types;
+}
 
+// Types and textures, as indices of the space's, of which a distractor may be: hard ones share one with the target.
+class Others {
+ public:
+  using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
+
+  Others(const FeatureSpace& space, Pairs all, const Features& target, bool hard) : all_(std::move(all)), hard_(hard) {
+    if (!hard) return;
+    for (const auto& pair : all_) {
+      if (space.object_types[pair.first] == target.type) same_type_.push_back(pair);
+      if (space.textures[pair.second] == target.texture) same_texture_.push_back(pair);
+    }
+  }
+  // Empty where there is none.
+  const Pairs& any(RandomStream& random) const {
+    if (!hard_) return all_;
+    const bool by_type = random.coin();
+    const Pairs &first = by_type ? same_type_ : same_texture_, &second = by_type ? same_texture_ : same_type_;
+    return first.empty() ? second : first;
+  }
+
+ private:
+  Pairs all_, same_type_, same_texture_;
+  bool hard_;
+};
+
+// Near misses of the target, or what other commands mean, where the scenes ask for them; else none.
+std::vector<Features> sample_misleading(const Request& request, const Features& target,
+                                        const std::vector<const FeatureSet*>& excluded,
+                                        const std::vector<bool>& allowed, int count, RandomStream& random) {
+  const FeatureSpace& space = request.scenario.space;
+  const Content& content = request.content;
+  if (content.unheard_decoys) return sample_unheard_decoys(request, target, allowed, count, random);
+  if (!content.decoys.empty()) return sample_decoys(request, excluded, allowed, count, random);
+  if (!content.near_miss) return {};
+  NearMissRequest near{request.meant.target.product(), target, {}, space.textures, *content.near_miss, {}};
+  for (std::size_t type = 0; type < allowed.size(); ++type)
+    if (allowed[type]) near.types.push_back(space.object_types[type]);
+  near.may_be = [&excluded](const Features& one) {
+    return std::none_of(excluded.begin(), excluded.end(),
+                        [&one](const FeatureSet* set) { return set->contains(one.type, one.texture); });
+  };
+  return near_misses(near, count, random);
+}
+
+// docs/protocol.md, section 3: objects that don't satisfy the command.
+std::vector<Features> sample_distractors(const Request& request, const Features& target, RandomStream& random) {
+  const FeatureSpace& space = request.scenario.space;
+  const Content& content = request.content;
+  const std::vector<const FeatureSet*> excluded = excluded_sets(request);
+  const auto [allowed, later_letters] = types_beside(request, target);
+  const Others others(space, outside(space, excluded, allowed), target, content.hard);
   const auto [fewest, most] = content.distractors;
   const int count =
       fewest == most ? most : fewest + static_cast<int>(random.below(static_cast<std::uint32_t>(most - fewest + 1)));
-  std::vector<Features> distractors;
-  if (content.near_miss) {
-    NearMissRequest near{request.meant.target.product(), target, {}, space.textures, *content.near_miss, {}};
-    for (std::size_t type = 0; type < allowed.size(); ++type)
-      if (allowed[type]) near.types.push_back(space.object_types[type]);
-    near.may_be = [&excluded](const Features& one) {
-      return std::none_of(excluded.begin(), excluded.end(),
-                          [&one](const FeatureSet* set) { return set->contains(one.type, one.texture); });
-    };
-    distractors = near_misses(near, count, random);
-  }
-  if (content.unheard_decoys)
-    distractors = sample_unheard_decoys(request, target, allowed, count, random);
-  else if (!content.decoys.empty())
-    distractors = sample_decoys(request, excluded, allowed, count, random);
+  std::vector<Features> distractors = sample_misleading(request, target, excluded, allowed, count, random);
   for (int i = static_cast<int>(distractors.size()); i < count; ++i) {
     if (!later_letters.empty() && random.coin()) {
       const std::string& type = any_of(later_letters, random);
       distractors.push_back({type, content.hard ? target.texture : any_of(space.textures, random)});
       continue;
     }
-    const auto* from = &others;
-    if (content.hard) {
-      from = random.coin() ? &same_type : &same_texture;
-      if (from->empty()) from = from == &same_type ? &same_texture : &same_type;
-    }
-    if (from->empty()) continue;
-    const auto [type, texture] = (*from)[random.below(static_cast<std::uint32_t>(from->size()))];
+    const Others::Pairs& from = others.any(random);
+    if (from.empty()) continue;
+    const auto [type, texture] = from[random.below(static_cast<std::uint32_t>(from.size()))];
     distractors.push_back({space.object_types[type], space.textures[texture]});
   }
   return distractors;

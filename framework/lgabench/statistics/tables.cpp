@@ -156,6 +156,48 @@ std::vector<std::string> empty_selections(const RunResults& run) {
   return lines;
 }
 
+// What the tables' rows and arms have to be told with.
+struct Noted {
+  std::set<std::string> marked;               // words of marks
+  std::set<std::string> same_as;              // arms whose actions another arm repeats
+  std::set<std::string> of_some;              // lines on arms that not all scenarios have
+  std::map<std::string, std::string> people;  // method -> whom its Selections measure, where that has to be said
+  std::set<std::string> models, live;         // behind cassettes, and asked while cells ran
+};
+
+void note_arms(const Table& table, Noted& noted) {
+  for (const std::string& arm : table.arms)
+    if (const auto some = table.scenarios_with(arm); some.size() + 1 < table.scenarios().size())
+      noted.of_some.insert(fmt::format(
+          "{}: the mean is over {}; {}.", table.arm_head(arm), fmt::join(some, ", "),
+          any_ambiguous(table, arm) ? "in the others its words are ambiguous (?)" : "no other scenario has this arm"));
+}
+
+void note_selections(const Row& row, Noted& noted) {
+  for (const PhiOfCommand& phi : row.phi) {
+    if (phi.provenance == "truth" || phi.provenance == "simulated_edit")
+      noted.people[row.method] = provenance_words(phi.provenance, phi.erring);
+    if (phi.provenance == "cassette") noted.models.insert(phi.source);
+    if (phi.provenance == "live") noted.live.insert(phi.source);
+  }
+}
+
+// Whether the method's Selections began as a language model's.
+bool edits(const RunResults& run, const std::string& method) {
+  return std::any_of(run.cells.begin(), run.cells.end(),
+                     [&method](const CellResult& cell) { return cell.method == method && cell.asks == "edit"; });
+}
+
+void note_row(const RunResults& run, const Row& row, Noted& noted) {
+  noted.marked.insert(row.marks.begin(), row.marks.end());
+  if (acts_the_same(row)) noted.same_as.insert(row.shift->against_title);
+  note_selections(row, noted);
+  if (row.is_mean() && row.participants > 0)
+    noted.people[row.method] = fmt::format("{} participant{}{}{}", row.participants, row.participants == 1 ? "" : "s",
+                                           run.rehearsal ? fmt::format(" ({})", rehearsal_words) : "",
+                                           edits(run, row.method) ? ", who edited a language model's φ̂" : "");
+}
+
 }  // namespace
 
 std::vector<std::string> what_it_lacks(const RunResults& run) {
@@ -175,44 +217,20 @@ std::vector<std::string> what_it_lacks(const RunResults& run) {
 }
 
 std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
-  std::set<std::string> marked;
-  std::set<std::string> same_as;              // arms
-  std::set<std::string> of_some;              // lines on arms that not all scenarios have
-  std::map<std::string, std::string> people;  // method -> whom its Selections measure, where that has to be said
-  std::set<std::string> models, live;         // behind cassettes, and asked while cells ran
-  std::set<std::string> edited;               // methods whose Selections began as a language model's
-  for (const CellResult& cell : run.cells)
-    if (cell.asks == "edit") edited.insert(cell.method);
+  Noted noted;
   for (const Table& table : summary.tables) {
-    for (const std::string& arm : table.arms)
-      if (const auto some = table.scenarios_with(arm); some.size() + 1 < table.scenarios().size())
-        of_some.insert(fmt::format("{}: the mean is over {}; {}.", table.arm_head(arm), fmt::join(some, ", "),
-                                   any_ambiguous(table, arm) ? "in the others its words are ambiguous (?)"
-                                                             : "no other scenario has this arm"));
-    for (const Row& row : table.rows) {
-      marked.insert(row.marks.begin(), row.marks.end());
-      if (acts_the_same(row)) same_as.insert(row.shift->against_title);
-      for (const PhiOfCommand& phi : row.phi) {
-        if (phi.provenance == "truth" || phi.provenance == "simulated_edit")
-          people[row.method] = provenance_words(phi.provenance, phi.erring);
-        if (phi.provenance == "cassette") models.insert(phi.source);
-        if (phi.provenance == "live") live.insert(phi.source);
-      }
-      if (row.is_mean() && row.participants > 0)
-        people[row.method] = fmt::format("{} participant{}{}{}", row.participants, row.participants == 1 ? "" : "s",
-                                         run.rehearsal ? fmt::format(" ({})", rehearsal_words) : "",
-                                         edited.count(row.method) == 1 ? ", who edited a language model's φ̂" : "");
-    }
+    note_arms(table, noted);
+    for (const Row& row : table.rows) note_row(run, row, noted);
   }
   std::vector<std::string> lines;
   if (run.record.smoke) lines.emplace_back("Smoke or limited run: not for the leaderboard.");
   const std::vector<std::string> lacks = what_it_lacks(run);
   lines.insert(lines.end(), lacks.begin(), lacks.end());
   for (const RowMark& mark : table_marks())
-    if (marked.count(mark.word) != 0) lines.push_back(fmt::format("{} {}.", mark.sign, mark.meaning));
-  for (const std::string& arm : same_as) lines.push_back(fmt::format("= the same actions as in {}.", arm));
-  lines.insert(lines.end(), of_some.begin(), of_some.end());
-  for (const auto& [method, who] : people) lines.push_back(fmt::format("{}: {}.", display_name(method), who));
+    if (noted.marked.count(mark.word) != 0) lines.push_back(fmt::format("{} {}.", mark.sign, mark.meaning));
+  for (const std::string& arm : noted.same_as) lines.push_back(fmt::format("= the same actions as in {}.", arm));
+  lines.insert(lines.end(), noted.of_some.begin(), noted.of_some.end());
+  for (const auto& [method, who] : noted.people) lines.push_back(fmt::format("{}: {}.", display_name(method), who));
   for (const Table& table : summary.tables)
     if (const auto& near = table.nearness)
       lines.push_back(
@@ -220,9 +238,9 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
                       "distance is {}.",
                       table.title(), table.title(mean_scenario), near->near, near->points, listed(near->methods),
                       fixed(near->mean_distance, 3)));
-  for (const std::string& model : models)
+  for (const std::string& model : noted.models)
     lines.push_back(fmt::format("Language model: {}, its replies played from a cassette.", model));
-  for (const std::string& model : live)
+  for (const std::string& model : noted.live)
     lines.push_back(fmt::format("Language model: {}, asked during the run; its replies are in answers/.", model));
   return lines;
 }

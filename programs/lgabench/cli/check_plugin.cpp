@@ -102,16 +102,15 @@ void note_compilation(const PluginInfo& plugin, CheckReport& report) {
               "build it without: results are then the same wherever the same numbers are computed");
 }
 
-// Two processes use the plugin: their findings, and whether they agree. Returns how many findings are printed already.
-std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const CheckPluginArguments& a,
-                  CheckReport& report) {
-  report.ok("descriptor", fmt::format("fits lgabench {}", LGABENCH_VERSION));
+void judge_id(const PluginInfo& plugin, const Catalogue& catalogue, CheckReport& report) {
   for (const PluginInfo& other : catalogue.plugins)
     if (other.kind == plugin.kind && other.id == plugin.id && other.sha256 != plugin.sha256)
       report.problem("id", fmt::format("{} is also the id of {}", plugin.id, other.file.string()),
                      "take another id: of two plugins with one id, the later is refused");
+}
 
-  note_compilation(plugin, report);
+// Whether lgabench itself has another thing of that name.
+void judge_name(const PluginInfo& plugin, CheckReport& report) {
   const std::vector<std::string> own = perturbation_ids({});
   if (plugin.kind == "perturbation" && contains(own, plugin.id))
     report.problem("id", fmt::format("{} is an axis of lgabench's own", plugin.id),
@@ -119,52 +118,90 @@ std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
   const std::vector<std::string>& readers = names_read();
   if (plugin.kind == "perceiver" && (plugin.id == Reading::simulator || contains(readers, plugin.id)))
     report.problem("id", fmt::format("{} is a word of --names", plugin.id), "take another: it would never be asked");
+}
+
+// A process that uses the plugin: what it found, and how it ended.
+struct CheckProcess {
+  fs::path report, log;
+  CheckJob job;
+  WorkerEnd end;
+
+  bool reported() const { return fs::exists(report); }
+  bool ended_well() const { return end.exit_code == 0 && end.signal == 0 && reported(); }
+  CheckReport found() const {
+    return reported() ? read_check_report(read_json(report), report.string()) : CheckReport();
+  }
+};
+
+std::array<CheckProcess, 2> two_processes(const PluginInfo& plugin, const PluginInfo& engine,
+                                          const CheckPluginArguments& a, const PoolOptions& pool,
+                                          const fs::path& scratch) {
+  CheckJob job;
+  job.engine = engine;
+  if (plugin.kind == "method") job.method = plugin;
+  if (plugin.kind == "perturbation" || plugin.kind == "perceiver") job.perturbation = plugin;
+  job.options = options_of(plugin, a.settings);
+  job.limits = worker_limits(pool);
+  job.environment = a.environment;
+  std::array<CheckProcess, 2> both;
+  for (std::size_t i = 0; i < both.size(); ++i) {
+    both[i] = {scratch / (i == 0 ? "first.json" : "second.json"), scratch / fmt::format("log{}.txt", i), job, {}};
+    both[i].job.scratch = scratch / fmt::format("method{}", i);
+    both[i].job.perturb = i == 0 ? 0 : 165;
+    both[i].job.report = both[i].report;
+  }
+  return both;
+}
+
+void report_end(const CheckProcess& process, double timeout_s, CheckReport& report) {
+  const bool said_why = process.end.complaint && process.end.complaint->signal == 0;
+  auto tail = log_tail(process.log);
+  if (process.end.complaint && !tail.empty()) tail.pop_back();  // the worker's own line, which says the same
+  report.problem("process", why_it_ended(process.end, timeout_s).reason,
+                 said_why || tail.empty() ? "" : fmt::format("it printed: {}", fmt::join(tail, "\n")));
+}
+
+void judge_agreement(const CheckReport& first, const CheckReport& second, CheckReport& report) {
+  if (second.hashes.empty()) return;
+  std::vector<std::string> differing;
+  for (const auto& [what, hash] : first.hashes.items())
+    if (second.hashes.value(what, Json()) != hash) differing.push_back(what);
+  report.judge("two processes", differing.empty() ? "" : fmt::format("disagree on: {}", fmt::join(differing, ", ")),
+               "agree bit for bit",
+               "look for values that were never set, addresses that are compared, a clock, a shared file");
+}
+
+// Two processes use the plugin: their findings, and whether they agree. Returns how many findings are printed already.
+std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const CheckPluginArguments& a,
+                  CheckReport& report) {
+  report.ok("descriptor", fmt::format("fits lgabench {}", LGABENCH_VERSION));
+  judge_id(plugin, catalogue, report);
+  note_compilation(plugin, report);
+  judge_name(plugin, report);
 
   const Scratch scratch("check");
   const PoolOptions pool{1, a.timeout_s, check_memory_gib(a.memory_gib)};
   const PluginInfo& engine = plugin.kind == "engine" ? plugin : default_engine(catalogue);
-  const Json options = options_of(plugin, a.settings);
-  std::array<fs::path, 2> reports{scratch.path / "first.json", scratch.path / "second.json"};
-  std::array<WorkerEnd, 2> ends;
+  std::array<CheckProcess, 2> both = two_processes(plugin, engine, a, pool, scratch.path);
   const auto make = [&](std::size_t i) {
-    CheckJob job;
-    job.engine = engine;
-    if (plugin.kind == "method") job.method = plugin;
-    if (plugin.kind == "perturbation" || plugin.kind == "perceiver") job.perturbation = plugin;
-    job.options = options;
-    job.scratch = scratch.path / fmt::format("method{}", i);
-    job.perturb = i == 0 ? 0 : 165;
-    job.report = reports[i];
-    job.limits = worker_limits(pool);
-    job.environment = a.environment;
-    fs::create_directory(job.scratch);
-    return WorkerTask{to_json(job), scratch.path / fmt::format("log{}.txt", i), "check-job"};
+    fs::create_directory(both[i].job.scratch);
+    return WorkerTask{to_json(both[i].job), both[i].log, "check-job"};
   };
-  Watching watching(report, reports[0], a);
+  Watching watching(report, both[0].report, a);
   const PoolEvents events{[](std::size_t) {},
                           [&](std::size_t, const std::string& phase, long long) { watching.phase(phase); },
-                          [&](std::size_t i, const WorkerEnd& end) { ends[i] = end; }, [&] { watching.tick(); }};
-  if (!run_workers(ends.size(), make, pool, events)) throw InputError("interrupted");
+                          [&](std::size_t i, const WorkerEnd& end) { both[i].end = end; }, [&] { watching.tick(); }};
+  if (!run_workers(both.size(), make, pool, events)) throw InputError("interrupted");
 
-  std::array<CheckReport, 2> found;
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    if (fs::exists(reports[i])) found[i] = read_check_report(read_json(reports[i]), reports[i].string());
-    if (i == 0) report.findings.insert(report.findings.end(), found[0].findings.begin(), found[0].findings.end());
-    if (ends[i].exit_code == 0 && ends[i].signal == 0 && fs::exists(reports[i])) continue;
-    const bool said_why = ends[i].complaint && ends[i].complaint->signal == 0;
-    auto tail = log_tail(scratch.path / fmt::format("log{}.txt", i));
-    if (ends[i].complaint && !tail.empty()) tail.pop_back();  // the worker's own line, which says the same
-    report.problem("process", why_it_ended(ends[i], a.timeout_s).reason,
-                   said_why || tail.empty() ? "" : fmt::format("it printed: {}", fmt::join(tail, "\n")));
-    if (i == 0) return watching.printed();
+  const CheckReport first = both[0].found();
+  report.findings.insert(report.findings.end(), first.findings.begin(), first.findings.end());
+  if (!both[0].ended_well()) {
+    report_end(both[0], a.timeout_s, report);
+    return watching.printed();
   }
-  std::vector<std::string> differing;
-  for (const auto& [what, hash] : found[0].hashes.items())
-    if (found[1].hashes.value(what, Json()) != hash) differing.push_back(what);
-  if (!found[1].hashes.empty())
-    report.judge("two processes", differing.empty() ? "" : fmt::format("disagree on: {}", fmt::join(differing, ", ")),
-                 "agree bit for bit",
-                 "look for values that were never set, addresses that are compared, a clock, a shared file");
+  const CheckReport second = both[1].found();
+  if (!both[1].ended_well()) report_end(both[1], a.timeout_s, report);
+  judge_agreement(first, second, report);
   return watching.printed();
 }
 

@@ -154,14 +154,15 @@ Json to_json(const PerturbationAxis& axis) {
   return json;
 }
 
-void info(const std::string& name, bool json, const std::vector<fs::path>& directories, const std::string& python) {
-  const Catalogue catalogue = plugins_at(directories, python);
-  Json found = Json::array();  // an environment and a suite may have one name
+// All that have the name, as an environment and a suite may; each is printed where JSON is not asked for.
+Json things_named(const std::string& name, const Catalogue& catalogue, bool json) {
+  Json found = Json::array();
+  const auto add = [&](const auto& thing) {
+    if (!json) print_info(thing);
+    found.push_back(to_json(thing));
+  };
   for (const PluginInfo& plugin : catalogue.plugins)
-    if (plugin.id == name) {
-      if (!json) print_info(plugin);
-      found.push_back(to_json(plugin));
-    }
+    if (plugin.id == name) add(plugin);
   for (const PerturbationAxis& axis : perturbation_axes())
     if (axis.id == name) {
       if (!json) print_own(axis);
@@ -173,23 +174,17 @@ void info(const std::string& name, bool json, const std::vector<fs::path>& direc
     found.push_back(scenario.json);
     found.back()["kind"] = "scenario";
   }
-  if (fs::exists(data_directory() / "suites" / (name + ".json"))) {
-    const Suite suite = load_suite(name);
-    if (!json) print_info(suite);
-    found.push_back(to_json(suite));
-  }
-  if (contains(environment_ids(), name)) {
-    const EnvironmentType& environment = find_environment(name);
-    if (!json) print_info(environment);
-    found.push_back(to_json(environment));
-  }
+  if (fs::exists(data_directory() / "suites" / (name + ".json"))) add(load_suite(name));
+  if (contains(environment_ids(), name)) add(find_environment(name));
   for (const Json& row : reference_rows())
     if (row.at("id") == name) {
       if (!json) print_reference_row(row);
       found.push_back(row);
     }
-  if (json && !found.empty()) to_stdout("{}\n", (found.size() == 1 ? found.front() : found).dump(2));
-  if (!found.empty()) return;
+  return found;
+}
+
+[[noreturn]] void fail_unknown(const std::string& name, const Catalogue& catalogue) {
   for (const auto& [file, reason] : catalogue.refused)
     if (file.stem() == name) throw PluginError(fmt::format("{} was refused: {}", file.string(), reason));
   std::vector<std::string> known = scenario_ids();
@@ -203,6 +198,13 @@ void info(const std::string& name, bool json, const std::vector<fs::path>& direc
       "other plugins with "
       "--plugin-path DIR",
       name, suggestion(name, known)));
+}
+
+void info(const std::string& name, bool json, const std::vector<fs::path>& directories, const std::string& python) {
+  const Catalogue catalogue = plugins_at(directories, python);
+  const Json found = things_named(name, catalogue, json);
+  if (found.empty()) fail_unknown(name, catalogue);
+  if (json) to_stdout("{}\n", (found.size() == 1 ? found.front() : found).dump(2));
 }
 
 }  // namespace

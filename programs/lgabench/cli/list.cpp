@@ -16,8 +16,8 @@
 #include <lgabench/core/shipped.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/answers.hpp>
-#include <lgabench/harness/expand.hpp>
 #include <lgabench/harness/suite.hpp>
+#include <lgabench/harness/expand.hpp>
 #include <lgabench/host/python_method.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/record/answer_source.hpp>
@@ -151,6 +151,45 @@ std::vector<std::string> sources_of(const std::vector<std::string>& scenarios) {
   return words;
 }
 
+// Of arms, or of axes where they are perturbations' ids: those of the suites.
+std::set<std::string> words_of_arms(const std::vector<Suite>& suites, bool axes) {
+  std::set<std::string> found;
+  for (const Suite& suite : suites) {
+    const SuiteArms arms = arms_of(suite, suite.design);
+    if (axes)
+      for (const auto& axis : arms.axes) found.insert(axis.first);
+    else
+      found.insert(arms.ids.begin(), arms.ids.end());
+  }
+  return found;
+}
+
+std::set<std::string> preset_words(const std::vector<Suite>& suites) {
+  std::set<std::string> found;
+  for (const Suite& suite : suites)
+    for (const auto& preset : suite.presets.items()) found.insert(preset.key());
+  return found;
+}
+
+// Of a section of the listing; of scenarios, those of the suite's environment.
+std::set<std::string> listed_words(const Json& section, const Suite* of) {
+  std::set<std::string> found;
+  for (const Json& row : section)
+    if (!of || load_scenario(row.at("id")).environment == of->environment) found.insert(row.at("id"));
+  return found;
+}
+
+// Of --answers and --layout: those that a run of that suite or scenario takes; "": any.
+std::vector<std::string> source_words(const std::string& of, bool of_suite) {
+  if (of.empty()) return answer_words(false);
+  return sources_of(of_suite ? load_suite(of).design.scenarios : std::vector{of});
+}
+
+std::vector<std::string> layout_words(const std::string& of, bool of_suite) {
+  if (of.empty()) return installed_layouts();
+  return of_suite ? layouts_of_all(load_suite(of)) : layouts_of(load_scenario(of));
+}
+
 // The words of one kind that options take: with `of`, those that a run of that suite or, of layouts, that scenario
 // takes.
 std::vector<std::string> words(const std::string& kind, const std::string& of, const Json& all) {
@@ -159,28 +198,17 @@ std::vector<std::string> words(const std::string& kind, const std::string& of, c
       std::any_of(shipped.begin(), shipped.end(), [&of](const Json& suite) { return suite.at("id") == of; });
   if (kind == "kinds") return {kinds.begin(), kinds.end()};
   if (kind == "axes") return train_on_axes();
-  if (kind == "sources" && of.empty()) return answer_words(false);
-  if (kind == "sources") return sources_of(of_suite ? load_suite(of).design.scenarios : std::vector{of});
-  if (kind == "layouts" && of.empty()) return installed_layouts();
-  if (kind == "layouts") return of_suite ? layouts_of_all(load_suite(of)) : layouts_of(load_scenario(of));
+  if (kind == "sources") return source_words(of, of_suite);
+  if (kind == "layouts") return layout_words(of, of_suite);
   std::vector<Suite> suites;
   if (!of.empty()) suites.push_back(load_suite(of));
   for (const Json& suite : of.empty() ? shipped : Json::array()) suites.push_back(load_suite(suite.at("id")));
-  std::set<std::string> found;
-  if (kind == "arms" || (kind == "perturbations" && !of.empty()))
-    for (const Suite& suite : suites) {
-      const SuiteArms arms = arms_of(suite, suite.design);
-      if (kind == "arms") found.insert(arms.ids.begin(), arms.ids.end());
-      if (kind == "perturbations")
-        for (const auto& axis : arms.axes) found.insert(axis.first);
-    }
-  else if (kind == "presets")
-    for (const Suite& suite : suites)
-      for (const auto& preset : suite.presets.items()) found.insert(preset.key());
-  else
-    for (const Json& row : all.at(kind == "rows" ? "reference rows" : kind))
-      if (of.empty() || kind != "scenarios" || load_scenario(row.at("id")).environment == suites.front().environment)
-        found.insert(row.at("id"));
+  const bool arms = kind == "arms", axes = kind == "perturbations" && !of.empty();
+  const Json& section = all.value(kind == "rows" ? "reference rows" : kind, Json());
+  const Suite* const scenarios_of = of.empty() || kind != "scenarios" ? nullptr : &suites.front();
+  const std::set<std::string> found = arms || axes        ? words_of_arms(suites, axes)
+                                      : kind == "presets" ? preset_words(suites)
+                                                          : listed_words(section, scenarios_of);
   return {found.begin(), found.end()};
 }
 

@@ -104,13 +104,28 @@ bool find_others_causes(const RunPlan& plan, const Catalogue& catalogue, const R
   return causes.has_value();
 }
 
-int run(const RunArguments& a) {
-  const auto [catalogue, plan] = plan_run(a);
+void print_notes(const RunArguments& a, const RunPlan& plan) {
   if (const std::string missing = missing_encoder(commands_of(plan)); !missing.empty())
     to_stderr("note: {}\n", missing);
   if (a.scene_seed && !a.quiet)
     to_stderr("--scene-seed {}: the test scenes are new; the demonstrations stay, as the training seeds draw them\n",
               *a.scene_seed);
+}
+
+// Prints the results as the options ask for; why there are none, "" where they are printed.
+std::string print_results(const RunArguments& a, const fs::path& out) {
+  const Printed form = a.json ? Printed::json : a.tables ? Printed::tables : a.quiet ? Printed::table : Printed::end;
+  try {
+    print_report(out, form);
+  } catch (const std::exception& e) {  // a full disk, or a damaged run: the counts are told all the same
+    return e.what();
+  }
+  return "";
+}
+
+int run(const RunArguments& a) {
+  const auto [catalogue, plan] = plan_run(a);
+  print_notes(a, plan);
   if (a.dry_run) return print_forecast(plan, catalogue, forecast(plan, catalogue));
   if (!a.debug.empty()) return debug_cell(plan, catalogue, a.debug);
   if (a.unconfined) to_stderr("--unconfined: methods run as you, with your files\n");
@@ -119,7 +134,7 @@ int run(const RunArguments& a) {
     to_stderr("interrupted; what was finished is kept. To resume:\n  {}\n", resuming_command(a, plan.out));
     return interrupted;
   }
-  std::string no_causes, no_report;
+  std::string no_causes;
   try {
     if (!find_others_causes(plan, catalogue, outcome)) {
       to_stderr("interrupted; all cells are scored, some causes of failures are not found. To find them:\n  {}\n",
@@ -131,15 +146,7 @@ int run(const RunArguments& a) {
   }
   print_counts(outcome, plan);
   const bool has_report = outcome.elsewhere < plan.cells.size();
-  try {
-    if (has_report)
-      print_report(plan.out, a.json     ? Printed::json
-                             : a.tables ? Printed::tables
-                             : a.quiet  ? Printed::table
-                                        : Printed::end);
-  } catch (const std::exception& e) {  // a full disk, or a damaged run: the counts are told all the same
-    no_report = e.what();
-  }
+  const std::string no_report = has_report ? print_results(a, plan.out) : "";
   for (const FailedCell& cell : outcome.failed)
     to_stderr("failed: {}: {} ({})\n", one_line(cell.title), one_line(cell.reason), cell.log.string());
   if (!outcome.failed.empty())

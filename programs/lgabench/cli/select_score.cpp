@@ -233,88 +233,122 @@ void print_misread(const Scores& scores) {
   }
 }
 
+// All that was asked about a suite, and what came of it.
+struct SuiteScores {
+  std::map<std::string, Scores> by_asking;  // of the ways in which somebody can answer
+  std::vector<Covered> covered;
+  std::vector<std::string> left_out, unanswered;  // lines
+  bool hopeless = false;                          // what was left out has answers that cannot be read
+};
+
+SuiteScores ask_all(const Suite& suite, Truth truth, int scenes, const WithAnswers& with_answers) {
+  SuiteScores all;
+  const auto unless_impossible = [&all](const char* what, const std::function<void()>& ask) {
+    try {
+      ask();
+    } catch (const InputError& e) {
+      all.left_out.push_back(fmt::format("{}: {}", what, one_line(e.what())));
+    } catch (const Hopeless& e) {
+      all.hopeless = true;
+      all.left_out.push_back(fmt::format("{}: {}", what, one_line(e.what())));
+    }
+  };
+  CountedProgress progress("commands scored:", static_cast<int>(std::size(ways_of_asking)) * commands_of(suite, truth));
+  for (const char* asking : ways_of_asking)
+    unless_impossible(asking, [&] {
+      const Scores scores = scores_of(asking, suite, truth, scenes, with_answers, progress);
+      all.unanswered.insert(all.unanswered.end(), scores.unanswered.begin(), scores.unanswered.end());
+      all.by_asking[asking] = scores;
+    });
+  progress.end();
+  unless_impossible("hypotheses", [&] { all.covered = coverage_of(suite, truth, with_answers, all.unanswered); });
+  return all;
+}
+
+std::vector<std::string> sources_in(const SuiteScores& asked) {
+  std::vector<std::string> sources;
+  for (const char* asking : {"structured", "flat"})
+    if (const auto scores = asked.by_asking.find(asking); scores != asked.by_asking.end())
+      for (const std::string& source : scores->second.sources) add_source(source, sources);
+  return sources;
+}
+
+// The arms that commands name, but for those that are called as a group of the suite.
+std::vector<std::string> named_arms(const std::vector<ScoredCommand>& commands, const Suite& suite) {
+  std::vector<std::string> arms;
+  for (const ScoredCommand& command : commands) {
+    const auto same = [&command](const auto& group) { return group.first == command.arm; };
+    if (!command.arm.empty() && !contains(arms, command.arm) &&
+        std::none_of(suite.groups.begin(), suite.groups.end(), same))
+      arms.push_back(command.arm);
+  }
+  return arms;
+}
+
+using InGroup = std::function<bool(const ScoredCommand&)>;
+
+// A row for each way of asking: of the commands in the group that enter means.
+void print_group(const std::string& group, const InGroup& is_in, const SuiteScores& asked, bool by_arm, bool json) {
+  for (const char* asking : ways_of_asking) {
+    const auto scores = asked.by_asking.find(asking);
+    if (scores == asked.by_asking.end()) continue;
+    Row row{group, asking, {}};
+    for (const ScoredCommand& command : scores->second.commands)
+      if (is_in(command) && !command.ambiguous) row.add(command.row);
+    json ? to_stdout("{}\n", canonical(to_json(row, by_arm))) : print(row, by_arm);
+  }
+}
+
+// The suite's groups, the arms where commands name them, then all.
+void print_groups(const Suite& suite, const std::vector<std::string>& arms, const SuiteScores& asked, bool json) {
+  const bool by_arm = !arms.empty();
+  for (const auto& [name, scenarios] : suite.groups)
+    print_group(
+        name, [list = scenarios](const ScoredCommand& one) { return contains(list, one.scenario); }, asked, by_arm,
+        json);
+  for (const std::string& arm : arms)
+    print_group(
+        arm, [&arm](const ScoredCommand& one) { return one.arm == arm; }, asked, by_arm, json);
+  print_group(
+      "all", [](const ScoredCommand&) { return true; }, asked, by_arm, json);
+}
+
 }  // namespace
 
 void print_scores(const Suite& suite, Truth truth, int scenes, bool json, bool expects_answers,
                   const WithAnswers& with_answers) {
-  std::map<std::string, Scores> by_asking;
-  std::vector<std::string> left_out, unanswered;
-  CountedProgress progress("commands scored:", static_cast<int>(std::size(ways_of_asking)) * commands_of(suite, truth));
-  bool hopeless = false;
-  // What is left out of the table, and why, where nobody can answer so.
-  const auto unless_impossible = [&](const char* what, const std::function<void()>& ask) {
-    try {
-      ask();
-    } catch (const InputError& e) {
-      left_out.push_back(fmt::format("{}: {}", what, one_line(e.what())));
-    } catch (const Hopeless& e) {
-      hopeless = true;
-      left_out.push_back(fmt::format("{}: {}", what, one_line(e.what())));
-    }
-  };
-  for (const char* asking : ways_of_asking)
-    unless_impossible(asking, [&] {
-      const Scores scores = scores_of(asking, suite, truth, scenes, with_answers, progress);
-      unanswered.insert(unanswered.end(), scores.unanswered.begin(), scores.unanswered.end());
-      by_asking[asking] = scores;
-    });
-  progress.end();
-  std::vector<Covered> covered;
-  unless_impossible("hypotheses", [&] { covered = coverage_of(suite, truth, with_answers, unanswered); });
-  Groups families;
-  for (const auto& [name, scenarios] : suite.groups) families.emplace_back(name, scenarios);
-  // Those of the suite, or the arms where commands name them, then all.
-  using InGroup = std::function<bool(const ScoredCommand&)>;
-  std::vector<std::pair<std::string, InGroup>> groups;
-  for (const auto& [name, scenarios] : families)
-    groups.emplace_back(name,
-                        [list = scenarios](const ScoredCommand& command) { return contains(list, command.scenario); });
-  bool by_arm = false;
-  for (const ScoredCommand& command : by_asking.at("named").commands) {
-    const auto same = [&command](const auto& group) { return group.first == command.arm; };
-    if (command.arm.empty() || std::any_of(groups.begin(), groups.end(), same)) continue;
-    by_arm = true;
-    groups.emplace_back(command.arm, [arm = command.arm](const ScoredCommand& one) { return one.arm == arm; });
-  }
-  groups.emplace_back("all", [](const ScoredCommand&) { return true; });
-  families.emplace_back("all", suite_scenario_ids(suite, suite.design));
-
-  std::vector<std::string> sources;
-  for (const char* asking : {"structured", "flat"})
-    if (by_asking.count(asking) > 0)
-      for (const std::string& source : by_asking[asking].sources) add_source(source, sources);
+  const SuiteScores asked = ask_all(suite, truth, scenes, with_answers);
+  const std::vector<std::string> sources = sources_in(asked),
+                                 arms = named_arms(asked.by_asking.at("named").commands, suite);
   if (!json)
     to_stdout("answers of {}; {} scenes of each arm\n\n{:<14} {:<11} {:>4}  {:<18}  {:>5}  {:>9}  {:>6}  {:>9}{}\n",
               sources.empty() ? "none" : fmt::format("{}", fmt::join(sources, " and ")), scenes, "", "asked", "n",
-              "scenes exact", "sets", "precision", "recall", "questions", by_arm ? "  otherwise" : "");
-  for (const auto& [group, is_in] : groups)
-    for (const char* asking : ways_of_asking) {
-      const auto scores = by_asking.find(asking);
-      if (scores == by_asking.end()) continue;
-      Row row{group, asking, {}};
-      for (const ScoredCommand& command : scores->second.commands)
-        if (is_in(command) && !command.ambiguous) row.add(command.row);
-      json ? to_stdout("{}\n", canonical(to_json(row, by_arm))) : print(row, by_arm);
-    }
-  const std::string why = fmt::format("{}{}", fmt::join(left_out, "\n"), left_out.empty() ? "" : "\n");
+              "scenes exact", "sets", "precision", "recall", "questions", arms.empty() ? "" : "  otherwise");
+  print_groups(suite, arms, asked, json);
+  const std::string why = fmt::format("{}{}", fmt::join(asked.left_out, "\n"), asked.left_out.empty() ? "" : "\n");
   if (json)
     to_stderr("{}", why);
   else
     to_stdout(
         "\nn: commands; sets: share of them with no pair of type and texture wrong; precision and recall of the "
         "objects kept.\n{}{}",
-        by_arm ? "otherwise: share of them for which something else was selected than for the scenario's first.\n" : "",
+        arms.empty()
+            ? ""
+            : "otherwise: share of them for which something else was selected than for the scenario's first.\n",
         why);
-  print_coverage(covered, families, json);
+  Groups families(suite.groups.begin(), suite.groups.end());
+  families.emplace_back("all", suite_scenario_ids(suite, suite.design));
+  print_coverage(asked.covered, families, json);
   for (const char* asking : ways_of_asking) {
-    const auto scores = by_asking.find(asking);
-    if (!json && scores != by_asking.end() && std::string(asking) != "named") print_misread(scores->second);
+    const auto scores = asked.by_asking.find(asking);
+    if (!json && scores != asked.by_asking.end() && std::string(asking) != "named") print_misread(scores->second);
   }
-  for (const std::string& question : unanswered) to_stderr("no answer: {}\n", one_line(question));
-  if (!unanswered.empty())
-    throw MethodError(fmt::format("{} questions have no answer; their commands are in no mean", unanswered.size()));
-  if (hopeless) throw MethodError("the model gives no answers that can be read in a form that was left out");
-  if (expects_answers && sources.empty()) throw InputError("no answer was scored: " + left_out.front());
+  for (const std::string& question : asked.unanswered) to_stderr("no answer: {}\n", one_line(question));
+  if (!asked.unanswered.empty())
+    throw MethodError(
+        fmt::format("{} questions have no answer; their commands are in no mean", asked.unanswered.size()));
+  if (asked.hopeless) throw MethodError("the model gives no answers that can be read in a form that was left out");
+  if (expects_answers && sources.empty()) throw InputError("no answer was scored: " + asked.left_out.front());
 }
 
 void write_best_products(const Suite& suite, Truth truth, const std::filesystem::path& file) {

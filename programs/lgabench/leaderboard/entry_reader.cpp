@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <ctime>
+#include <optional>
 
 #include <lgabench/abstraction/quality.hpp>
 #include <lgabench/core/contains.hpp>
@@ -138,19 +139,15 @@ Json read_supersedes(const JsonReader& reader) {
   return reader.json();
 }
 
-// Wherever it lies.
-Entry read_files(const fs::path& path, const Vouched* vouched) {
+void expect_entry_files(const fs::path& path) {
   expect_plain_entries(path);
   for (const auto& file : fs::directory_iterator(path))
     if (!contains(entry_files, file.path().filename()))
       throw InputError(
           fmt::format("{}: expected only entry.json, cells.jsonl and verifications.jsonl here", file.path().string()));
-  const fs::path file = path / "entry.json";
-  const std::string bytes = read_file(file, Links::refused, most_entry_bytes);
-  const Json json = expanded(parse_json(bytes, file.string()), file.string());
-  const JsonReader reader(json, file.string());
-  reader.only({"id", "identity", "preset", "about", "failures", "phi", "score", "evidence", "withdrawn", "supersedes"});
-  Entry entry;
+}
+
+void read_hashed(const JsonReader& reader, Entry& entry) {
   entry.identity = read_identity(reader.at("identity"));
   entry.setting = read_setting(reader.at("preset"));
   if (entry.identity.preset_sha256 != leaderboard::hash(entry.setting))
@@ -159,6 +156,16 @@ Entry read_files(const fs::path& path, const Vouched* vouched) {
     reader.at("identity").at("scene_seed").fail("that of /preset");
   if (const std::string id = entry.id(); reader.at("id").string() != id)
     reader.at("id").fail(id + ", the hash of /identity");
+}
+
+// entry.json, without the cells that follow from it.
+Entry read_head(const fs::path& file) {
+  const std::string bytes = read_file(file, Links::refused, most_entry_bytes);
+  const Json json = expanded(parse_json(bytes, file.string()), file.string());
+  const JsonReader reader(json, file.string());
+  reader.only({"id", "identity", "preset", "about", "failures", "phi", "score", "evidence", "withdrawn", "supersedes"});
+  Entry entry;
+  read_hashed(reader, entry);
   expect_about(reader.at("about"));
   entry.about = reader.at("about").json();
   entry.failures = read_failures(reader.at("failures"));
@@ -177,8 +184,11 @@ Entry read_files(const fs::path& path, const Vouched* vouched) {
   if (reader.has("supersedes")) entry.supersedes = read_supersedes(reader.at("supersedes"));
   if (entry_text(entry) != bytes && long_entry_text(entry) != bytes)
     throw InputError(fmt::format("{}: not as it is written", file.string()));
+  return entry;
+}
 
-  const fs::path lines = path / "cells.jsonl";
+// cells.jsonl: those of the entry's setting, in its order.
+void read_cells(const fs::path& lines, Entry& entry) {
   int number = 0;
   const std::vector<Place> places = entry.setting.places(learns(entry.identity.row));
   const std::string text = read_bounded(lines);
@@ -193,29 +203,44 @@ Entry read_files(const fs::path& path, const Vouched* vouched) {
     throw InputError(fmt::format("{}: expected {} cells, got {}; the next is {}", lines.string(), places.size(),
                                  entry.cells.size(), places[entry.cells.size()].text()));
   if (text != cells_text(entry)) throw InputError(fmt::format("{}: not as it is written", lines.string()));
-  if (vouched != nullptr)
-    if (const auto inferred = vouched->instructions.find(entry.id()); inferred != vouched->instructions.end())
-      entry.inferred_instructions = inferred->second;
+}
+
+// What the board's maintainers say of the entry.
+void add_vouched(const Vouched& vouched, Entry& entry) {
+  if (const auto inferred = vouched.instructions.find(entry.id()); inferred != vouched.instructions.end())
+    entry.inferred_instructions = inferred->second;
   const std::string hash = entry.hash();
-  if (vouched != nullptr) {
-    const auto own = vouched->lines.find(hash);
-    const auto rest = vouched->entries.find(hash);
-    if (own != vouched->lines.end() && rest != vouched->entries.end() && rest->second == entry.rest_hash())
-      entry.vouched = own->second;
-  }
-  const fs::path checks = path / "verifications.jsonl";
-  if (!fs::exists(checks)) return entry;
+  const auto own = vouched.lines.find(hash);
+  const auto rest = vouched.entries.find(hash);
+  if (own != vouched.lines.end() && rest != vouched.entries.end() && rest->second == entry.rest_hash())
+    entry.vouched = own->second;
+}
+
+// verifications.jsonl; `most`: of lines that no maintainer vouches for.
+void read_verifications(const fs::path& checks, std::optional<std::size_t> most, Entry& entry) {
+  if (!fs::exists(checks)) return;
   const std::vector<Json> verifications = parse_json_lines(read_bounded(checks), checks.string());
   const auto claims = std::count_if(verifications.begin(), verifications.end(),
                                     [&entry](const Json& line) { return !entry.counts(line); });
-  if (vouched != nullptr && static_cast<std::size_t>(claims) > most_claims)
+  if (most && static_cast<std::size_t>(claims) > *most)
     throw InputError(fmt::format("{}: expected at most {} lines that no maintainer vouches for, got {}",
-                                 checks.string(), most_claims, claims));
-  number = 0;
+                                 checks.string(), *most, claims));
+  int number = 0;
+  const std::string hash = entry.hash();
   for (const Json& line : verifications) {
     expect_verification(JsonReader(line, fmt::format("{}: line {}", checks.string(), ++number)), entry, hash);
     entry.verifications.push_back(line);
   }
+}
+
+// Wherever it lies.
+Entry read_files(const fs::path& path, const Vouched* vouched) {
+  expect_entry_files(path);
+  Entry entry = read_head(path / "entry.json");
+  read_cells(path / "cells.jsonl", entry);
+  if (vouched != nullptr) add_vouched(*vouched, entry);
+  read_verifications(path / "verifications.jsonl", vouched != nullptr ? std::optional(most_claims) : std::nullopt,
+                     entry);
   return entry;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/random.hpp>
@@ -126,58 +127,67 @@ bool Session::post(const Json& event, std::int64_t now_ms) {
   return turns_the_page(event);
 }
 
+Session::Expected Session::expected(const JsonReader& kind) const {
+  const auto trial_is = [this](Trial::State state) { return step() == trials && now().state == state; };
+  const bool in_trial = trial_is(Trial::shown), of_pairs = in_trial && !now().item->pairs.empty();
+  const std::map<std::string, Expected> of_kind{
+      {"opened", {{}, true}},
+      {"familiarised", {{}, step() == familiarisation}},
+      {"example_seen", {{}, step() == example}},
+      {"start", {{}, trial_is(Trial::waiting)}},
+      {"shown", {{}, trial_is(Trial::started)}},
+      {"blur", {{}, in_trial}},
+      {"focus", {{}, in_trial}},
+      {"active", {{}, in_trial}},
+      {"idle", {{"since_ms"}, in_trial}},
+      {"edit", {{"role", "feature", "values", "on"}, in_trial && !of_pairs}},
+      {"meant", {{"target"}, in_trial && protocol_->meanings}},
+      {"submit", {{of_pairs ? "answers" : "selection", "longest_wait_ms"}, in_trial}},
+      {"questionnaire", {{"tlx", "free_text"}, step() == questionnaire}}};
+  const auto found = of_kind.find(kind.string());
+  if (found == of_kind.end()) kind.fail("a kind of event");
+  return found->second;
+}
+
 void Session::check(const JsonReader& event, std::int64_t now_ms) const {
   const double at = event.at("page_ms").number();
   if (!std::isfinite(at) || at < 0) event.at("page_ms").fail("milliseconds");
+  auto [members, fits] = expected(event.at("kind"));
+  members.insert(members.end(), {"key", "page", "kind", "page_ms"});
+  event.only(members);
+  if (!fits) event.at("kind").fail("an event that fits where the session is");
   const std::string kind = event.at("kind").string();
-  const auto only = [&](std::vector<std::string> more, bool fits) {
-    more.insert(more.end(), {"key", "page", "kind", "page_ms"});
-    event.only(more);
-    if (!fits) event.at("kind").fail("an event that fits where the session is");
-  };
-  const bool in_trial = step() == trials && now().state == Trial::shown;
-  if (kind == "opened") return only({}, true);
-  if (kind == "familiarised") return only({}, step() == familiarisation);
-  if (kind == "example_seen") return only({}, step() == example);
-  if (kind == "start") return only({}, step() == trials && now().state == Trial::waiting);
-  if (kind == "shown") return only({}, step() == trials && now().state == Trial::started);
-  if (kind == "blur" || kind == "focus" || kind == "active") return only({}, in_trial);
-  if (kind == "idle") {
-    only({"since_ms"}, in_trial);
-    if (event.at("since_ms").number() > at) event.at("since_ms").fail("a time before it");
+  if (kind == "idle" && event.at("since_ms").number() > at) event.at("since_ms").fail("a time before it");
+  if (kind == "edit") check_edit(event);
+  if (kind == "meant") meant(event);
+  if (kind == "submit") check_submit(event, now_ms);
+  if (kind == "questionnaire") check_questionnaire(event);
+}
+
+void Session::check_submit(const JsonReader& event, std::int64_t now_ms) const {
+  const double at = event.at("page_ms").number();
+  if (at <= shown_ms_) event.at("page_ms").fail("a time after the command was shown");
+  if (!simulated_ && at - shown_ms_ > static_cast<double>(now_ms - shown_at_) + 1000 * clocks_apart_s)
+    event.at("page_ms").fail("a time that has passed here too");
+  event.at("longest_wait_ms").number();
+  const auto& pairs = now().item->pairs;
+  if (pairs.empty()) {
+    submitted(event);
     return;
   }
-  const bool of_pairs = in_trial && !now().item->pairs.empty();
-  if (kind == "edit") {
-    only({"role", "feature", "values", "on"}, in_trial && !of_pairs);
-    return check_edit(event);
-  }
-  if (kind == "meant") {
-    only({"target"}, in_trial && protocol_->meanings);
-    meant(event);
-    return;
-  }
-  if (kind == "submit") {
-    only({of_pairs ? "answers" : "selection", "longest_wait_ms"}, in_trial);
-    if (at <= shown_ms_) event.at("page_ms").fail("a time after the command was shown");
-    if (!simulated_ && at - shown_ms_ > static_cast<double>(now_ms - shown_at_) + 1000 * clocks_apart_s)
-      event.at("page_ms").fail("a time that has passed here too");
-    event.at("longest_wait_ms").number();
-    if (!of_pairs) return void(submitted(event));
-    if (event.at("answers").elements().size() != now().item->pairs.size())
-      event.at("answers").fail("one for each pair");
-    for (const JsonReader& one : event.at("answers").elements())
-      if (!contains(pair_answers, one.string())) one.fail("yes, no or can't tell");
-    return;
-  }
-  if (kind != "questionnaire") event.at("kind").fail("a kind of event");
-  only({"tlx", "free_text"}, step() == questionnaire);
+  const std::vector<JsonReader> answers = event.at("answers").elements();
+  if (answers.size() != pairs.size()) event.at("answers").fail("one for each pair");
+  for (const JsonReader& one : answers)
+    if (!contains(pair_answers, one.string())) one.fail("yes, no or can't tell");
+}
+
+void Session::check_questionnaire(const JsonReader& event) const {
   for (const std::string& scale : scales)
     if (!event.at("tlx").at(scale).json().is_null()) event.at("tlx").at(scale).integer(0, 100);
   event.at("tlx").only(scales);
-  if (between_parts() && !event.at("free_text").string().empty()) event.at("free_text").fail("nothing before the end");
-  if (event.at("free_text").string().size() > longest_text)
-    event.at("free_text").fail(fmt::format("at most {} bytes", longest_text));
+  const std::string text = event.at("free_text").string();
+  if (between_parts() && !text.empty()) event.at("free_text").fail("nothing before the end");
+  if (text.size() > longest_text) event.at("free_text").fail(fmt::format("at most {} bytes", longest_text));
 }
 
 void Session::check_edit(const JsonReader& event) const {

@@ -76,8 +76,15 @@ class Session {
 
  private:
   void begin(const Json& event);
+  struct Expected {
+    std::vector<std::string> members;  // beside those of every event
+    bool fits;                         // where the session is
+  };
+  Expected expected(const JsonReader& kind) const;
   void check(const JsonReader& event, std::int64_t now_ms) const;
   void check_edit(const JsonReader& event) const;
+  void check_submit(const JsonReader& event, std::int64_t now_ms) const;
+  void check_questionnaire(const JsonReader& event) const;
   Meaning meant(const JsonReader& event) const;
   Selection submitted(const JsonReader& event) const;
   void apply(const Json& event);
