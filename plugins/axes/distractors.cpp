@@ -14,12 +14,11 @@ PerturbationAxis distractors() {
       {EpisodePart::objects, EpisodePart::physics, EpisodePart::rgb, EpisodePart::ids, EpisodePart::instances}};
   axis.change = [](Scene scene, const Scenario& scenario, int level, RandomStream stream) {
     const bool near_miss = stream.coin();
-    return find_environment(scenario.environment)
-        .with_distractors(scenario, std::move(scene), level, near_miss, stream);
+    return scenario.environment->with_distractors(scenario, std::move(scene), level, near_miss, stream);
   };
   axis.bodies = [](int level) { return BodyVariants{{1}, 1, 1, level}; };
   axis.lacks = [](const Scenario& scenario, int level) -> std::string {
-    const int room = find_environment(scenario.environment).room_for_distractors(scenario);
+    const int room = scenario.environment->room_for_distractors(scenario);
     return level <= room
                ? ""
                : fmt::format("expected scenes with room for {} more, {} has room for {}", level, scenario.id, room);

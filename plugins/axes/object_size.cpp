@@ -18,7 +18,7 @@ PerturbationAxis object_size() {
                         {EpisodePart::physics, EpisodePart::rgb},
                         {EpisodePart::ids}};  // less than a pixel of a small thing
   axis.change = [](Scene scene, const Scenario& scenario, int level, RandomStream stream) {
-    const EnvironmentType& environment = find_environment(scenario.environment);
+    const EnvironmentType& environment = *scenario.environment;
     return stream.coin() ? environment.resized(std::move(scene), down.at(static_cast<std::size_t>(level - 1)))
                          : environment.with_larger_target(std::move(scene), larger(level));
   };

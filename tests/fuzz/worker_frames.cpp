@@ -22,7 +22,7 @@ struct Answering {
   DeclaredHuman human{std::make_unique<TruthAsHuman>(scenario.commands), "edit"};
   NoLog log;
   Json options = Json::object();
-  ActionSpace actions = find_environment(scenario.environment).action_space();
+  ActionSpace actions = scenario.environment->action_space();
   Services services{model, human, options, 0, log, actions, declared_truth(scenario.commands, "truth"), {}};
 };
 

@@ -51,7 +51,7 @@ TEST(Environments, FailureWordsKeepTheirOrder) {
 
 TEST(Environments, DrawWhatAnEpisodeBeginsWith) {
   const Scenario heart = load_scenario("heart");
-  const EnvironmentType& tabletop = find_environment(heart.environment);
+  const EnvironmentType& tabletop = *heart.environment;
   const Scene scene = tabletop.sample(heart, {"cells", "test", "test"}, 3);
   const Observation seen = tabletop.draw(scene), again = tabletop.draw(scene);
   EXPECT_EQ(seen.rgb, again.rgb);

@@ -262,7 +262,7 @@ TEST_F(Play, ReferenceRows) {
 
 TEST(ReferenceRows, EachActsAsAMethodOrByARule) {
   for (const ReferenceRow& row : reference_rows())
-    EXPECT_NE(reference_method(row.id) != nullptr, static_cast<bool>(reference_actor(row.id))) << row.id;
+    EXPECT_NE(reference_method(row.id) != nullptr, static_cast<bool>(reference_actor(row.id).choose)) << row.id;
 }
 
 TEST_F(Play, ReferenceRowsThatHearNoCommandFindTheTargetWhereTheSceneGivesItAway) {
@@ -315,7 +315,7 @@ TEST_F(Play, MostDemonstratedCountsWhatTheScenesCommandTook) {
   took(1, 0);
   const auto takes = [&](const char* row, int command, std::size_t object) {
     scene.command = command;
-    return reference_actor(row, shown)(*environment, scene, labelled).action ==
+    return reference_actor(row, shown).act(*environment, scene, labelled).action ==
            environment->expert_action_for(objects[object].instance_id);
   };
   EXPECT_TRUE(takes("most_demonstrated", 0, 1));
@@ -338,9 +338,9 @@ TEST(ReferenceRows, LeadToTheReceiverThatWasDemonstrated) {
         object.role = "receiver";
     for (const Scene& shown : {scene, elsewhere}) {
       const SceneObject* const receiver = shown.find("receiver");
-      const Action action =
-          reference_actor("most_demonstrated", {{shown}, "receiver", actions_of(scenario)})(*environment, scene, seen)
-              .action;
+      const Action action = reference_actor("most_demonstrated", {{shown}, "receiver", actions_of(scenario)})
+                                .act(*environment, scene, seen)
+                                .action;
       ASSERT_EQ(action.size(), 8u);
       EXPECT_NEAR(action[6], receiver->position_m.x, 1e-9) << i;
       EXPECT_NEAR(action[7], receiver->position_m.y, 1e-9) << i;
@@ -409,8 +409,7 @@ TEST_F(Play, AnEpisodeKeepsWhetherItsInputStoodInTraining) {
     return evaluate(*environment, scenes, policy_actor(policy, instructions, "p"), [](int) {});
   };
   auto episodes = played(telling);
-  attribute_failures(*environment, scenes, policy_actor(telling, instructions, "p"),
-                     policy_actor(telling, instructions, "p"), episodes);
+  attribute_failures(*environment, scenes, policy_actor(telling, instructions, "p"), instructions, episodes);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(episodes[i].input_seen, i % 2 == 1) << "of the action that counts";
     EXPECT_EQ(to_json(episodes[i]).at("input_seen"), i % 2 == 1);
@@ -456,8 +455,7 @@ TEST_F(Play, AFailureIsTheAbstractionsWhereTheTruthWouldHaveHelped) {
     scenes[2].abstraction_empty = true;
     auto episodes = evaluate(*environment, scenes, policy_actor(policy, instructions, "p"), [](int) {});
     EXPECT_TRUE(to_json(episodes[0]).at("attribution").is_null());
-    attribute_failures(*environment, scenes, policy_actor(policy, instructions, "p"),
-                       policy_actor(policy, true_ones, "p"), episodes);
+    attribute_failures(*environment, scenes, policy_actor(policy, instructions, "p"), true_ones, episodes);
     std::vector<std::string> all;
     for (const Episode& e : episodes) all.push_back(e.attribution);
     return all;
@@ -493,7 +491,7 @@ TEST_F(Play, AFailureIsPerceptionsWhereThePolicySucceedsOnceItSees) {
   };
   const Actor actor = policy_actor(policy, instructions, "p");
   auto episodes = evaluate(*environment, scenes, actor, [](int) {});
-  attribute_failures(*environment, scenes, actor, actor, episodes);
+  attribute_failures(*environment, scenes, actor, instructions, episodes);
   std::vector<std::string> all;
   for (const Episode& e : episodes) all.push_back(e.attribution);
   EXPECT_EQ(all, (std::vector<std::string>{"", "perception", ""}));
@@ -511,12 +509,10 @@ TEST_F(Play, AFailureIsTheReadingsWhereThePolicySucceedsWithTheSimulatorsNames) 
     return seen;
   };
   scenes[2].perception = [&](const Observation& seen, const Scene&) { return blind(seen); };
-  const Actor unread = policy_actor(policy, instructions, "p"),
-              read = reading_actor(
-                  [&](const Observation&seen, const Scene&scene) { return scene.index == 0 ? seen : blind(seen); },
-                  unread);
-  auto episodes = evaluate(*environment, scenes, read, [](int) {});
-  attribute_failures(*environment, scenes, read, unread, episodes, unread);
+  Actor actor = policy_actor(policy, instructions, "p");
+  actor.reads = [&](const Observation& seen, const Scene& scene) { return scene.index == 0 ? seen : blind(seen); };
+  auto episodes = evaluate(*environment, scenes, actor, [](int) {});
+  attribute_failures(*environment, scenes, actor, instructions, episodes);
   std::vector<std::string> all;
   for (const Episode& e : episodes) all.push_back(e.attribution);
   EXPECT_EQ(all, (std::vector<std::string>{"", "reading", "abstraction"})) << "the third: in neither picture";

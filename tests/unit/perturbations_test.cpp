@@ -36,7 +36,7 @@ const std::vector<Drawn>& drawn(const Scenario& scenario) {
   std::vector<Drawn>& of = all[scenario.id];
   for (int i = static_cast<int>(of.size()); i < episodes; ++i) {
     const Scene scene = test_scene(scenario, layouts_of(scenario).front(), scenario.tests.front().id, 0, i);
-    of.push_back({scene, find_environment(scenario.environment).draw(scene)});
+    of.push_back({scene, scenario.environment->draw(scene)});
   }
   return of;
 }
@@ -45,7 +45,7 @@ const std::vector<Drawn>& drawn(const Scenario& scenario) {
 std::vector<PerturbedEpisode> played(const std::vector<const PerturbationAxis*>& axes, int level,
                                      const std::string& id = "heart") {
   const Scenario scenario = load_scenario(id);
-  const EnvironmentType& environment = find_environment(scenario.environment);
+  const EnvironmentType& environment = *scenario.environment;
   std::vector<PerturbedEpisode> all;
   for (int i = 0; i < episodes; ++i) {
     auto [scene, seen] = drawn(scenario)[static_cast<std::size_t>(i)];
@@ -69,13 +69,20 @@ std::vector<PerturbedEpisode> played(const std::vector<const PerturbationAxis*>&
   return all;
 }
 
+// A scenario whose arm "perturbed" has that axis.
+Scenario with_axis(const PerturbationAxis& axis) {
+  Scenario scenario;
+  scenario.tests.resize(1);
+  scenario.tests.front().id = "perturbed";
+  scenario.tests.front().axes = {&axis};
+  return scenario;
+}
+
 void expect_as_declared(const PerturbationAxis& axis, int level, const std::string& scenario = "heart") {
   std::vector<PerturbedEpisode> all = played({&axis}, 0, scenario);
   const auto perturbed = played({&axis}, level, scenario);
   all.insert(all.end(), perturbed.begin(), perturbed.end());
-  expect_declared(all, {}, false, [&](const PerturbedEpisode& e) {
-    return e.axis.empty() ? std::vector<const PerturbationAxis*>() : std::vector<const PerturbationAxis*>{&axis};
-  });
+  expect_declared(all, {}, false, with_axis(axis));
 }
 
 TEST(Perturbations, EveryAxisChangesWhatItDeclaresAndNothingElse) {
@@ -95,9 +102,7 @@ TEST(Perturbations, TheFirstArmIsTheControlAmongSeveral) {
     all.push_back(e);
   }
   for (const PerturbedEpisode& e : played({&axis}, 1)) all.push_back(e);
-  EXPECT_NO_THROW(expect_declared(all, {}, false, [&](const PerturbedEpisode& e) {
-    return e.axis.empty() ? std::vector<const PerturbationAxis*>() : std::vector<const PerturbationAxis*>{&axis};
-  }));
+  EXPECT_NO_THROW(expect_declared(all, {}, false, with_axis(axis)));
 }
 
 TEST(Perturbations, ADeadAxisIsCaught) {
@@ -151,13 +156,14 @@ TEST(Perturbations, APolicyThatActsOtherwiseOnTheSameInputIsCaught) {
   for (PerturbedEpisode& e : same) e.arm = "perturbed", e.axis = "none", e.level = 1;
   all.insert(all.end(), same.begin(), same.end());
   const PerturbationAxis none{"none", {"nothing"}, {}};
-  const auto axes = [&](const PerturbedEpisode&) { return std::vector<const PerturbationAxis*>{&none}; };
+  const Scenario scenario = with_axis(none);
   std::vector<Episode> acted{{"control", 3, 0, "", failure::none, {1., 2.}},
                              {"perturbed", 3, 0, "", failure::none, {1., 2.}}};
-  EXPECT_NO_THROW(expect_declared(all, acted, true, axes));
+  EXPECT_NO_THROW(expect_declared(all, acted, true, scenario));
   acted.back().action.back() += 1e-12;
-  EXPECT_SAYS(message_of<MethodError>([&] { expect_declared(all, acted, true, axes); }), "in episode 3 of perturbed");
-  EXPECT_NO_THROW(expect_declared(all, acted, false, axes)) << "reference rows may look at more than their input";
+  EXPECT_SAYS(message_of<MethodError>([&] { expect_declared(all, acted, true, scenario); }),
+              "in episode 3 of perturbed");
+  EXPECT_NO_THROW(expect_declared(all, acted, false, scenario)) << "reference rows may look at more than their input";
 }
 
 TEST(Perturbations, AreComparedWithTheFirstArmAndNoOtherWithout) {
@@ -166,8 +172,7 @@ TEST(Perturbations, AreComparedWithTheFirstArmAndNoOtherWithout) {
   for (PerturbedEpisode& e : other) e.arm = "hard", e.hashes.fill("0");
   for (PerturbedEpisode& e : same) e.arm = "perturbed", e.axis = "none", e.level = 1;
   for (const auto& more : {other, same}) all.insert(all.end(), more.begin(), more.end());
-  EXPECT_NO_THROW(expect_declared(
-      all, {}, true, [&](const PerturbedEpisode&) { return std::vector<const PerturbationAxis*>{&none}; }));
+  EXPECT_NO_THROW(expect_declared(all, {}, true, with_axis(none)));
 }
 
 // How far a picture, and a segmentation, lie from the control's: the size of a change grows with the level.

@@ -60,8 +60,7 @@ std::vector<PerturbedEpisode> noted(const Scenario& scenario, std::unique_ptr<Ph
     const Perception perception = perception_of(scenario, arm);
     for (int i = 0; i < played_of_each; ++i) {
       const Scene scene = scene_of(scenario, arm.id, i);
-      const Scene control =
-          find_environment(scenario.environment).sample(scenario, {layout_of(scenario), "test", arm.id, 0}, i);
+      const Scene control = scenario.environment->sample(scenario, {layout_of(scenario), "test", arm.id, 0}, i);
       Observation seen = environment->reset(scene);
       if (const View view = view_of(scenario, scene); view != View()) seen = environment->look(view);
       if (perception) seen = perception(seen, scene);
@@ -83,7 +82,7 @@ TEST(PerturbedScenes, EveryAxisChangesWhatItDeclaresAndNothingElse) {
       return arm.perturbation && (arm.perturbation->axis == "selection_errors" || arm.perturbation->axis == all_axes);
     };
     scenario.tests.erase(std::remove_if(scenario.tests.begin(), scenario.tests.end(), selects), scenario.tests.end());
-    EXPECT_NO_THROW(expect_declared(noted(scenario, make_engine()), {}, false, axes_in(scenario)));
+    EXPECT_NO_THROW(expect_declared(noted(scenario, make_engine()), {}, false, scenario));
   }
 }
 
@@ -96,7 +95,7 @@ TEST(PerturbedScenes, BodiesChangeInEveryEnvironmentAndOnEveryEngine) {
     for (const char* of : {"mujoco", "bullet"}) {
       SCOPED_TRACE(id + " on " + of);
       const Scenario scenario = with_arms(id, control, bodies);
-      EXPECT_NO_THROW(expect_declared(noted(scenario, load_engine(engine(of))), {}, false, axes_in(scenario)));
+      EXPECT_NO_THROW(expect_declared(noted(scenario, load_engine(engine(of))), {}, false, scenario));
     }
 }
 
@@ -111,9 +110,8 @@ struct Careless : ForwardingWorld {  // of mass and friction
 
 TEST(PerturbedScenes, AnEngineThatIgnoresFrictionAndMassIsCaught) {
   const Scenario scenario = with_arms("heart", {{"distractors", {2, 2}}}, {"friction_mass"});
-  EXPECT_SAYS(message_of<EngineError>([&] {
-                expect_declared(noted(scenario, std::make_unique<Careless>()), {}, false, axes_in(scenario));
-              }),
+  EXPECT_SAYS(message_of<EngineError>(
+                  [&] { expect_declared(noted(scenario, std::make_unique<Careless>()), {}, false, scenario); }),
               "perturbation friction_mass at level 1: physics equals the control's in 8 of 8 episodes");
 }
 
@@ -133,9 +131,8 @@ struct Shifting : ForwardingWorld {  // what is heavy
 
 TEST(PerturbedScenes, AnEngineThatPutsHeavyBodiesElsewhereIsCaught) {
   const Scenario scenario = with_arms("heart", {{"distractors", {2, 2}}}, {"friction_mass"});
-  EXPECT_SAYS(message_of<EngineError>([&] {
-                expect_declared(noted(scenario, std::make_unique<Shifting>()), {}, false, axes_in(scenario));
-              }),
+  EXPECT_SAYS(message_of<EngineError>(
+                  [&] { expect_declared(noted(scenario, std::make_unique<Shifting>()), {}, false, scenario); }),
               "objects differs from the control's");
 }
 

@@ -278,7 +278,7 @@ std::vector<std::tuple<std::string, std::string>> every_scenario_and_layout(cons
   for (const std::string& id : scenario_ids()) {
     if (id.rfind(prefix, 0) != 0) continue;
     const Scenario scenario = load_scenario(id);
-    if (scenario.environment != "tabletop") continue;
+    if (scenario.environment->id() != "tabletop") continue;
     if (tabletop::content_of(*scenario.train).by_meaning) continue;  // meant_scenes_test.cpp
     if (tabletop::content_of(*scenario.train).persons) continue;     // persons_test.cpp
     for (const std::string& layout : layouts(scenario.task)) {

@@ -9,8 +9,8 @@
 #include <set>
 
 #include <common/objects.hpp>
-#include <lgabench/harness/expand.hpp>
 #include <lgabench/harness/suite.hpp>
+#include <lgabench/harness/expand.hpp>
 #include <lgabench/statistics/statistics.hpp>
 #include <tabletop/content.hpp>
 #include <tabletop/sampler.hpp>

@@ -77,7 +77,7 @@ TEST(Views, WhatIsSeenMovesTheSameWayAtEveryLevelAndFartherAtEachNext) {
   for (const char* id : {"heart", "bring_fruit"})
     for (const char* axis : moving) {
       const Scenario scenario = perturbed(id, axis);
-      const EnvironmentType& environment = find_environment(scenario.environment);
+      const EnvironmentType& environment = *scenario.environment;
       for (int i = 0; i < scenes; ++i) {
         SCOPED_TRACE(fmt::format("{} {} {}", id, axis, i));
         const Scene scene = control(scenario, i);
@@ -159,7 +159,7 @@ TEST(Views, LightAndTableLeaveEveryIdWhereItIs) {
   for (const char* id : {"heart", "sweep_block_without_touching_line", "bring_fruit"})
     for (const char* axis : {"light_direction", "table"}) {
       const Scenario scenario = perturbed(id, axis);
-      const EnvironmentType& environment = find_environment(scenario.environment);
+      const EnvironmentType& environment = *scenario.environment;
       for (int level = 1; level <= levels; ++level) {
         const Scene scene = control(scenario, level);
         const Observation usual = environment.draw(scene),
@@ -258,7 +258,7 @@ TEST(Views, AFailureInAMovedPictureIsPerceptionsWhereThePolicySucceedsInTheUsual
     tests.push_back({control(scenario, i), nullptr, false, view_at(scenario, "camera_shift", levels, i)});
   const Actor oracle = reference_actor("oracle");
   std::vector<Episode> episodes = evaluate(*environment, tests, oracle, [](int) {});
-  attribute_failures(*environment, tests, oracle, oracle, episodes);
+  attribute_failures(*environment, tests, oracle, {}, episodes);
   for (const Episode& episode : episodes) EXPECT_EQ(episode.attribution, "perception");
 }
 

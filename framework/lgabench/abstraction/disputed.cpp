@@ -40,7 +40,7 @@ bool is_disputed(const DisputedPairs& pairs, const Scenario& scenario, const Sce
                     [&](const FeatureSet& set) { return set.contains(object.object_type, object.texture); }))
       ids.push_back(object.instance_id);
   if (ids.empty()) return false;
-  const Observation seen = find_environment(scenario.environment).draw(scene, view_of(scenario, scene));
+  const Observation seen = scenario.environment->draw(scene, view_of(scenario, scene));
   return std::any_of(seen.instances.begin(), seen.instances.end(),
                      [&](const Instance& one) { return one.pixels > 0 && contains(ids, one.id); });
 }

@@ -93,9 +93,9 @@ fs::path reader_file(const std::string& environment, const Reading& reading) {
 
 std::string why_not_read(const Scenario& scenario, const Reading& reading) {
   if (reading.none()) return "";
-  if (reading.needs_library() && !fs::is_directory(data_directory() / "readers" / scenario.environment))
-    return fmt::format("no reader was trained on pictures of {}", scenario.environment);
-  const EnvironmentType& environment = find_environment(scenario.environment);
+  const EnvironmentType& environment = *scenario.environment;
+  if (reading.needs_library() && !fs::is_directory(data_directory() / "readers" / environment.id()))
+    return fmt::format("no reader was trained on pictures of {}", environment.id());
   for (const std::string& id : played_arms(scenario.json))
     if (const Arm& arm = scenario.arm(id);
         arm.label_noise != 0 || arm.missed_segment != 0 || environment.perception(*arm.scenes))
@@ -109,10 +109,10 @@ ReadPicture reading_of(const Scenario& scenario, const Reading& reading, std::sh
   if (reading.needs_library()) {
     Scene nothing;
     nothing.task = scenario.task;
-    empty = std::make_shared<const Observation>(find_environment(scenario.environment).draw(nothing));
+    empty = std::make_shared<const Observation>(scenario.environment->draw(nothing));
   }
   const bool whitens = balances(reading.names), finds = reading.segments == Reading::difference;
-  if (const fs::path file = reader_file(scenario.environment, reading); !file.empty())
+  if (const fs::path file = reader_file(scenario.environment->id(), reading); !file.empty())
     perceiver = library().reader(file, whitens, *empty, scenario.space);
   return [space = scenario.space, empty, perceiver, whitens, finds](const Observation& seen, const Scene& scene) {
     Observation read{seen.size, seen.rgb, seen.ids, {}};

@@ -66,7 +66,7 @@ SceneScore score(const Scenario& scenario, int command, const Selection& selecti
   score.commands = 1;
   score.exact_sets =
       has_exact_sets(scenario, selection.target, scenario.commands[static_cast<std::size_t>(command)].truth.target);
-  const EnvironmentType& environment = find_environment(scenario.environment);
+  const EnvironmentType& environment = *scenario.environment;
   for (const Arm& arm : scenario.tests) {
     const std::vector<int> commands = scenario.commands_of(arm.id);
     const auto turn = std::find(commands.begin(), commands.end(), command);

@@ -51,17 +51,16 @@ class InOrder final : public Environment {
 }  // namespace
 
 std::unique_ptr<Environment> make_environment(const Scenario& scenario, std::unique_ptr<PhysicsWorld> world) {
-  return std::make_unique<InOrder>(find_environment(scenario.environment).make(std::move(world), scenario));
+  return std::make_unique<InOrder>(scenario.environment->make(std::move(world), scenario));
 }
 
 Scene training_scene(const Scenario& scenario, const std::string& layout, const std::vector<Selection>& selections,
                      std::uint64_t training_seed, int index) {
-  return find_environment(scenario.environment)
-      .sample(scenario, {layout, "train", "train", training_seed, selections}, index);
+  return scenario.environment->sample(scenario, {layout, "train", "train", training_seed, selections}, index);
 }
 
 Scene sampled_scene(const Scenario& scenario, const SceneRequest& request, int index) {
-  Scene scene = find_environment(scenario.environment).sample(scenario, request, index);
+  Scene scene = scenario.environment->sample(scenario, request, index);
   return request.arm == "train" ? scene : perturbed(std::move(scene), scenario, request.training_seed);
 }
 
@@ -72,11 +71,10 @@ Scene test_scene(const Scenario& scenario, const std::string& layout, const std:
 
 Perception perception_of(const Scenario& scenario, const Arm& arm, std::optional<std::uint64_t> training_seed) {
   const TextualizationNoise noise{arm.label_noise, arm.missed_segment};
-  const Perceive perceive = find_environment(scenario.environment).perception(*arm.scenes);
+  const Perceive perceive = scenario.environment->perception(*arm.scenes);
   std::vector<const PerturbationAxis*> axes;
-  if (arm.perturbation)
-    for (const PerturbationAxis* axis : axes_of(scenario, *arm.perturbation))
-      if (axis->perceive) axes.push_back(axis);
+  for (const PerturbationAxis* axis : arm.axes)
+    if (axis->perceive) axes.push_back(axis);
   if (!perceive && noise.label_noise == 0 && noise.missed_segment == 0 && axes.empty()) return nullptr;
   const std::string own = own_stream(training_seed);
   const int level = arm.perturbation ? arm.perturbation->level : 0;
@@ -97,10 +95,10 @@ Perception perception_of(const Scenario& scenario, const Arm& arm, std::optional
 View view_of(const Scenario& scenario, const Scene& scene, std::optional<std::uint64_t> training_seed) {
   View view;
   if (scene.arm == "train") return view;
-  const std::optional<Perturbation>& perturbation = scenario.arm(scene.arm).perturbation;
-  if (!perturbation) return view;
-  for (const PerturbationAxis* axis : axes_of(scenario, *perturbation))
-    if (axis->look) axis->look(view, scene, perturbation->level, perturbation_stream(axis->id, scene, training_seed));
+  const Arm& arm = scenario.arm(scene.arm);
+  for (const PerturbationAxis* axis : arm.axes)
+    if (axis->look)
+      axis->look(view, scene, arm.perturbation->level, perturbation_stream(axis->id, scene, training_seed));
   return view;
 }
 

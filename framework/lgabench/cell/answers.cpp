@@ -94,8 +94,7 @@ std::unique_ptr<HumanAnswers> people_of(const Scenario& scenario, const std::str
   return std::make_unique<AskedInScenes>(
       scenario, demonstrations, options.value("questions", 0), [&scenario, layout, training_seed](int command, int n) {
         const int index = n * static_cast<int>(scenario.commands.size()) + command;
-        return placed(
-            find_environment(scenario.environment).draw(training_scene(scenario, layout, {}, training_seed, index)));
+        return placed(scenario.environment->draw(training_scene(scenario, layout, {}, training_seed, index)));
       });
 }
 

@@ -188,7 +188,7 @@ struct Outside {
 
 // The action's numbers as text. @throws MethodError where it cannot be carried out.
 std::string action_text(const Actor& actor, const Bench& bench, const Sight& sight, Outside* outside = nullptr) {
-  const Move move = actor(*bench.environment, sight.scene, sight.observation);
+  const Move move = actor.act(*bench.environment, sight.scene, sight.observation);
   const ActionSpace& space = bench.environment->action_space();
   executable(space, move.action);
   if (outside) outside->note(space, move.action);
@@ -536,7 +536,7 @@ class MethodCheck {
 std::optional<Scenario> with_unseen_commands(const std::string& environment) {
   for (const std::string& id : scenario_ids()) {
     Scenario scenario = load_scenario(id);
-    if (!environment.empty() && scenario.environment != environment) continue;
+    if (!environment.empty() && scenario.environment->id() != environment) continue;
     for (const ScenarioCommand& command : scenario.commands)
       if (!command.seen) return scenario;
   }
@@ -549,7 +549,7 @@ CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase
   job.seed = seed;
   job.hidden = runs_below(job.plugin.file.parent_path());
   std::optional<Scenario> unseen = with_unseen_commands(job.environment);
-  if (job.environment.empty()) job.environment = unseen ? unseen->environment : environment_ids().front();
+  if (job.environment.empty()) job.environment = unseen ? unseen->environment->id() : environment_ids().front();
   std::vector<std::unique_ptr<Bench>> benches;
   const std::string& example = find_environment(job.environment).tasks().front().example;
   benches.push_back(std::make_unique<Bench>(load_scenario(example), engine));

@@ -17,7 +17,7 @@ Episode play(Environment& environment, const TestScene& test, const Actor& actor
   if (test.view != View()) observation = environment.look(test.view);
   if (test.perception) observation = test.perception(observation, scene);
   try {
-    const Move move = actor(environment, scene, observation);
+    const Move move = actor.act(environment, scene, observation);
     const StepResult result = environment.step(move.action);  // refuses one that is not executable()
     episode.failure = result.failure;
     episode.taken = result.taken;
@@ -31,34 +31,39 @@ Episode play(Environment& environment, const TestScene& test, const Actor& actor
   return episode;
 }
 
-// `told(scene)` is an Instruction, or a reference to one.
-template <class Told>
-Actor acting(Policy& policy, Told told, const std::string& plugin_id) {
-  return [&policy, told = std::move(told), plugin_id](const Environment&, const Scene& scene,
-                                                      const Observation& observation) {
+Actor::Told told_by_command(const std::vector<Instruction>& instructions) {
+  return [&instructions](const Scene& scene) { return instructions.at(static_cast<std::size_t>(scene.command)); };
+}
+
+}  // namespace
+
+Move Actor::act(const Environment& environment, const Scene& scene, const Observation& seen) const {
+  Given given{scene, seen};
+  if (told) given.told = told(scene);
+  if (reads) given.read = reads(seen, scene);
+  if (recorder) recorder->given(environment, given);
+  const Move move = choose(environment, given);
+  if (recorder) recorder->acted();
+  return move;
+}
+
+Actor policy_actor(Policy& policy, Actor::Told told, const std::string& plugin_id) {
+  const auto choose = [&policy, plugin_id](const Environment&, const Given& given) {
     try {
       return guarded(plugin_id, [&] {
         policy.reset();
-        const Action action = policy.act(observation, told(scene));
+        const Action action = policy.act(given.observation(), given.told.value());
         return Move(action, policy.seen_in_training());
       });
     } catch (const InputError& e) {  // at this point only the method can be at fault
       throw MethodError(e.what());
     }
   };
+  return {choose, std::move(told)};
 }
-
-}  // namespace
 
 Actor policy_actor(Policy& policy, const std::vector<Instruction>& instructions, const std::string& plugin_id) {
-  const auto told = [&instructions](const Scene& scene) -> const Instruction& {
-    return instructions.at(static_cast<std::size_t>(scene.command));
-  };
-  return acting(policy, told, plugin_id);
-}
-
-Actor policy_actor(Policy& policy, std::function<Instruction(const Scene&)> told, const std::string& plugin_id) {
-  return acting(policy, std::move(told), plugin_id);
+  return policy_actor(policy, told_by_command(instructions), plugin_id);
 }
 
 std::vector<Episode> evaluate(Environment& environment, const std::vector<TestScene>& scenes, const Actor& actor,
@@ -72,19 +77,16 @@ std::vector<Episode> evaluate(Environment& environment, const std::vector<TestSc
   return episodes;
 }
 
-Actor reading_actor(Perception reading, Actor actor) {
-  if (!reading) return actor;
-  return [reading = std::move(reading), actor = std::move(actor)](const Environment& environment, const Scene& scene,
-                                                                  const Observation& seen) {
-    return actor(environment, scene, reading(seen, scene));
-  };
-}
-
-void attribute_failures(Environment& environment, const std::vector<TestScene>& scenes, const Actor& actor,
-                        const Actor& with_truth, std::vector<Episode>& episodes, const Actor& unread) {
+void attribute_failures(Environment& environment, const std::vector<TestScene>& scenes, Actor actor,
+                        const std::vector<Instruction>& truth, std::vector<Episode>& episodes) {
   const auto succeeds = [&environment](const TestScene& test, const Actor& acts) {
     return play(environment, test, acts).success();
   };
+  actor.recorder = nullptr;
+  Actor unread = actor;
+  unread.reads = nullptr;
+  Actor with_truth = unread;
+  with_truth.told = told_by_command(truth);
   for (std::size_t i = 0; i < episodes.size(); ++i) {
     Episode& episode = episodes[i];
     if (episode.success()) continue;
@@ -93,7 +95,7 @@ void attribute_failures(Environment& environment, const std::vector<TestScene>& 
     as_it_is.view = View();
     if (episode.failure == failure::abstraction_empty)
       episode.attribution = "abstraction";
-    else if (unread && succeeds(scenes[i], unread))
+    else if (actor.reads && succeeds(scenes[i], unread))
       episode.attribution = "reading";
     else if (errs && succeeds(as_it_is, actor))
       episode.attribution = "perception";

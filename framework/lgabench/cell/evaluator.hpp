@@ -21,31 +21,59 @@ struct Move {
   std::optional<bool> input_seen;  // as in Policy::seen_in_training()
 };
 
-/// Chooses the one action of an episode. @throws MethodError where it cannot.
-using Actor = std::function<Move(const Environment& environment, const Scene& scene, const Observation& observation)>;
+/// What an actor is given in a scene.
+struct Given {
+  const Scene& scene;
+  const Observation& seen;
+  std::optional<Observation> read = {};  // what was read of it, given in its place
+  std::optional<Instruction> told = {};  // none: a reference row is told nothing
 
-/// A policy as an actor: it sees the observation and the instruction for the scene's command, nothing else. What it
-/// throws, an InputError included, is a MethodError. Holds references. `instructions`: one a command of the scenario.
+  const Observation& observation() const { return read ? *read : seen; }
+};
+
+/// Takes note of what an actor is given, episode by episode.
+class Recorder {
+ public:
+  virtual ~Recorder() = default;
+  /// Before the actor acts.
+  virtual void given(const Environment& environment, const Given& given) = 0;
+  /// After it did, unless it threw.
+  virtual void acted() = 0;
+};
+
+/// Who plays test scenes: how it acts, what it is told, what it reads, and who takes note of that.
+struct Actor {
+  using Told = std::function<Instruction(const Scene&)>;
+
+  /// Chooses the one action of an episode. @throws MethodError where it cannot.
+  std::function<Move(const Environment&, const Given&)> choose = nullptr;
+  Told told = nullptr;           // null: nothing
+  Perception reads = nullptr;    // gives what it is given in place of what is seen; null: that
+  Recorder* recorder = nullptr;  // null: nobody takes note
+
+  /// @throws as choose()
+  Move act(const Environment& environment, const Scene& scene, const Observation& seen) const;
+};
+
+/// A policy as an actor: it sees the observation and what it is told, nothing else. What it throws, an InputError
+/// included, is a MethodError. Holds a reference.
+Actor policy_actor(Policy& policy, Actor::Told told, const std::string& plugin_id);
+
+/// A policy that is told the instruction of the scene's command: `instructions`, which it refers to, has one for each
+/// of the scenario.
 Actor policy_actor(Policy& policy, const std::vector<Instruction>& instructions, const std::string& plugin_id);
-
-/// Likewise, with the instruction that `told` gives for the scene.
-Actor policy_actor(Policy& policy, std::function<Instruction(const Scene&)> told, const std::string& plugin_id);
 
 /// One episode a scene, in order; `done(n)` after each. A MethodError fails its episode as method_error. @throws
 /// EngineError if the engine fails: then nothing can be said of the method.
 std::vector<Episode> evaluate(Environment& environment, const std::vector<TestScene>& scenes, const Actor& actor,
                               const std::function<void(int)>& done);
 
-/// `actor`, who is given what `reading` makes of an observation. Null: as it is.
-Actor reading_actor(Perception reading, Actor actor);
-
-/// Says of every failed episode what failed (docs/protocol.md, section 5): "reading" where `unread`, the same policy
-/// given the simulator's names and segments, succeeds in the same picture; "perception" where `actor`, the same policy,
-/// succeeds in the same scene seen as it is; "abstraction" where `with_truth`, the policy told the true Selection as
-/// well, and unread, does, and where nothing was selected; else "policy". `unread` is null where nothing is read. Other
-/// arguments as of evaluate(), `episodes` what it returned.
-/// @throws EngineError if the engine fails.
-void attribute_failures(Environment& environment, const std::vector<TestScene>& scenes, const Actor& actor,
-                        const Actor& with_truth, std::vector<Episode>& episodes, const Actor& unread = {});
+/// Says of every failed episode what failed (docs/protocol.md, section 5): "reading" where `actor`, given the
+/// simulator's names and segments, succeeds in the same picture; "perception" where it succeeds in the same scene seen
+/// as it is; "abstraction" where it succeeds there when it reads nothing and is told `truth`, one instruction a
+/// command, and where nothing was selected; else "policy". `episodes` is what evaluate() returned of these scenes and
+/// this actor, a policy. Nobody takes note. @throws EngineError if the engine fails.
+void attribute_failures(Environment& environment, const std::vector<TestScene>& scenes, Actor actor,
+                        const std::vector<Instruction>& truth, std::vector<Episode>& episodes);
 
 }  // namespace lgabench

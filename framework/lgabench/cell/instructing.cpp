@@ -37,51 +37,46 @@ Instruction instruction_in(const Scene& scene, const Scenario& scenario, const C
   const int command = command_given(scene, scenario, cell.scenes_of_seed());
   Instruction told = instructions.at(static_cast<std::size_t>(command));
   const Arm& arm = scenario.arm(scene.arm);
-  if (!arm.perturbation) return told;
-  for (const PerturbationAxis* axis : axes_of(scenario, *arm.perturbation)) {
+  for (const PerturbationAxis* axis : arm.axes) {
     if (!axis->selection_errors) continue;
     const double p = axis->selection_errors(arm.perturbation->level);
-    told.selection = with_errors(std::move(told.selection), scenario, command, SelectionErrors{p, p},
-                                 perturbation_stream(axis->id, scene, cell.scenes_of_seed()),
-                                 find_environment(scenario.environment).goal_type());
+    told.selection =
+        with_errors(std::move(told.selection), scenario, command, SelectionErrors{p, p},
+                    perturbation_stream(axis->id, scene, cell.scenes_of_seed()), scenario.environment->goal_type());
   }
   return told;
 }
 
-Actor recording_actor(const Actor& actor, const Perception& reading, const Scenario& scenario, const Cell& cell,
-                      const std::vector<Instruction>& instructions, const Policy* policy,
-                      std::vector<PerturbedEpisode>& episodes) {
-  return [&, actor, reading, policy](const Environment& environment, const Scene& scene, const Observation& seen) {
-    const auto& perturbation = scenario.arm(scene.arm).perturbation;
-    const Scene control =
-        find_environment(scenario.environment)
-            .sample(scenario, {cell.layout, "test", scene.arm, cell.scene_seed, {}, cell.scenes_of_seed()},
-                    scene.index);
-    const SceneObject* const target = scene.find(role::target);
-    PerturbedEpisode episode{scene.arm,
-                             scene.index,
-                             perturbation ? perturbation->axis : "",
-                             perturbation ? perturbation->level : 0,
-                             {},
-                             "",
-                             target ? target->scale : 1};
-    const Instruction told = instruction_in(scene, scenario, cell, instructions);
-    const int command = command_given(scene, scenario, cell.scenes_of_seed());
-    const std::optional<Observation> read = reading ? std::optional(reading(seen, scene)) : std::nullopt;
-    episode.hashes = parts_of({scene, environment.bodies(), control}, seen,
-                              policy ? &instructions.at(static_cast<std::size_t>(command)) : nullptr,
-                              policy ? &told : nullptr, read ? &*read : nullptr);
-    if (read) episode.names = names_hash(*read);
-    episodes.push_back(episode);
-    const Move move = actor(environment, scene, read ? *read : seen);
-    if (policy) episodes.back().read = read_by(*policy, cell.method.id);
-    return move;
-  };
+void PerturbedLines::given(const Environment& environment, const Given& given) {
+  const Scene& scene = given.scene;
+  const std::optional<std::uint64_t> seed = cell_.scenes_of_seed();
+  const auto& perturbation = scenario_.arm(scene.arm).perturbation;
+  const Scene control = scenario_.environment->sample(
+      scenario_, {cell_.layout, "test", scene.arm, cell_.scene_seed, {}, seed}, scene.index);
+  const SceneObject* const target = scene.find(role::target);
+  const int command = command_given(scene, scenario_, seed);
+  const Observation* const read = given.read ? &*given.read : nullptr;
+  PerturbedEpisode episode{scene.arm,
+                           scene.index,
+                           perturbation ? perturbation->axis : "",
+                           perturbation ? perturbation->level : 0,
+                           {},
+                           "",
+                           target ? target->scale : 1};
+  episode.hashes = parts_of({scene, environment.bodies(), control}, given.seen,
+                            given.told ? &selected_.at(static_cast<std::size_t>(command)) : nullptr,
+                            given.told ? &*given.told : nullptr, read);
+  if (read) episode.names = names_hash(*read);
+  episodes_.push_back(std::move(episode));
 }
 
-std::string perturbed_text(const std::vector<PerturbedEpisode>& episodes) {
+void PerturbedLines::acted() {
+  if (policy_) episodes_.back().read = read_by(*policy_, cell_.method.id);
+}
+
+std::string PerturbedLines::text() const {
   std::string lines;
-  for (const PerturbedEpisode& one : episodes) lines += canonical(to_json(one)) + '\n';
+  for (const PerturbedEpisode& one : episodes_) lines += canonical(to_json(one)) + '\n';
   return lines;
 }
 

@@ -1,4 +1,4 @@
-// What a policy is told in each test scene of a perturbed cell, and what is recorded of it.
+// What a policy is told in each test scene, and what is recorded of it in a perturbed cell.
 #pragma once
 #include <string>
 #include <vector>
@@ -14,15 +14,28 @@ namespace lgabench {
 Instruction instruction_in(const Scene& scene, const Scenario& scenario, const Cell& cell,
                            const std::vector<Instruction>& instructions);
 
-/// `actor`, which appends to `episodes` hashes of what it is given in each. `policy` is null for a reference row, which
-/// is given no instruction. `reading`: what the actor is given in place of what is seen; null: that. All arguments are
-/// borrowed but these two.
-Actor recording_actor(const Actor& actor, const Perception& reading, const Scenario& scenario, const Cell& cell,
-                      const std::vector<Instruction>& instructions, const Policy* policy,
-                      std::vector<PerturbedEpisode>& episodes);
+/// perturbed.jsonl as it grows: hashes of what an actor is given in each episode of the cell.
+class PerturbedLines final : public Recorder {
+ public:
+  /// `selected`: an instruction for each command, before perturbations. `policy` is null for a reference row. All
+  /// arguments outlive this object.
+  PerturbedLines(const Scenario& scenario, const Cell& cell, const std::vector<Instruction>& selected,
+                 const Policy* policy)
+      : scenario_(scenario), cell_(cell), selected_(selected), policy_(policy) {}
 
-/// perturbed.jsonl.
-std::string perturbed_text(const std::vector<PerturbedEpisode>& episodes);
+  void given(const Environment& environment, const Given& given) override;
+  void acted() override;
+
+  const std::vector<PerturbedEpisode>& episodes() const { return episodes_; }
+  std::string text() const;
+
+ private:
+  const Scenario& scenario_;
+  const Cell& cell_;
+  const std::vector<Instruction>& selected_;
+  const Policy* const policy_;
+  std::vector<PerturbedEpisode> episodes_;
+};
 
 /// Where an axis gives other commands: notes what each episode took, in the scene's own control as in every arm.
 void note_takings(const Scenario& scenario, const Cell& cell, const std::vector<TestScene>& tests,

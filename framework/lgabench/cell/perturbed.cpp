@@ -40,13 +40,6 @@ Json named_instances(const Observation& observation) {
 
 }  // namespace
 
-AxesOf axes_in(const Scenario& scenario) {
-  return [&scenario](const PerturbedEpisode& episode) {
-    return episode.axis.empty() ? std::vector<const PerturbationAxis*>()
-                                : axes_of(scenario, {episode.axis, episode.level});
-  };
-}
-
 std::string names_hash(const Observation& observation) {
   return hash_of(hash_of(bytes_of(observation.ids)) + hash_of(named_instances(observation)));
 }
@@ -92,7 +85,7 @@ std::array<std::string, parts> parts_of(const PlayedScene& played, const Observa
 }
 
 void expect_declared(const std::vector<PerturbedEpisode>& all, const std::vector<Episode>& episodes, bool actions,
-                     const AxesOf& axes_of) {
+                     const Scenario& scenario) {
   std::map<Key, const Action*> acted;
   for (const Episode& e : episodes)
     if (!e.action.empty()) acted[{e.arm, e.index}] = &e.action;
@@ -109,7 +102,7 @@ void expect_declared(const std::vector<PerturbedEpisode>& all, const std::vector
     }
     const auto found = control.find(e.index);
     if (found == control.end()) continue;  // not played
-    const auto axes = axes_of(e);
+    const std::vector<const PerturbationAxis*>& axes = scenario.arm(e.arm).axes;
     for (std::size_t part = 0; part < parts; ++part) {
       const bool differs = e.hashes[part] != found->second->hashes[part];
       const auto touches = [part](const PerturbationAxis* axis) {

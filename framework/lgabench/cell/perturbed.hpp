@@ -1,6 +1,5 @@
 // What perturbations changed in the episodes of a cell, and whether that is what their axes declare.
 #pragma once
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -12,11 +11,6 @@ namespace lgabench {
 
 /// In what share of episodes a part that an axis changes is another one, at least.
 constexpr double fewest_changed = .95;
-
-/// The axes that changed an episode; none for the control's.
-using AxesOf = std::function<std::vector<const PerturbationAxis*>(const PerturbedEpisode&)>;
-/// Those of the scenario's arms. @pre it outlives what is returned.
-AxesOf axes_in(const Scenario& scenario);
 
 /// A scene as it was played.
 struct PlayedScene {
@@ -34,13 +28,14 @@ std::array<std::string, parts> parts_of(const PlayedScene& played, const Observa
 /// Of ids, and of the id, type and texture of each instance.
 std::string names_hash(const Observation& observation);
 
-/// Expects of every axis that parts which it does not declare are the control's, to the bit, and that a part which it
-/// changes is another one in at least 95 % of its arm's episodes. `actions`: whether a policy acts, whose action must
-/// be the control's, to the bit, where its input is. `episodes` as evaluate() returned them, those of the control
-/// first. Where an axis leaves picture, ids and instances as they are, what is read of them must be the same too.
+/// Expects of every axis of the scenario's arms that parts which it does not declare are the control's, to the bit, and
+/// that a part which it changes is another one in at least 95 % of its arm's episodes. `actions`: whether a policy
+/// acts, whose action must be the control's, to the bit, where its input is. `episodes` as evaluate() returned them,
+/// those of the control first. Where an axis leaves picture, ids and instances as they are, what is read of them must
+/// be the same too.
 /// @throws EngineError that names axis, part and episode; MethodError where the policy is at fault, or a plugin whose
 /// axis it is.
 void expect_declared(const std::vector<PerturbedEpisode>& parts, const std::vector<Episode>& episodes, bool actions,
-                     const AxesOf& axes);
+                     const Scenario& scenario);
 
 }  // namespace lgabench

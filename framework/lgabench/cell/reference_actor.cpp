@@ -21,10 +21,10 @@ namespace {
 using Instances = std::vector<Instance>;
 
 // What can be seen and taken.
-Instances visible(const Scene& scene, const Observation& observation) {
-  const SceneObject* goal = scene.find(role::goal);
+Instances visible(const Given& given) {
+  const SceneObject* goal = given.scene.find(role::goal);
   Instances all;
-  for (const Instance& instance : observation.instances)
+  for (const Instance& instance : given.observation().instances)
     if (instance.pixels > 0 && !(goal && instance.id == goal->instance_id)) all.push_back(instance);
   if (all.empty()) throw MethodError("no object is visible");
   return all;
@@ -37,17 +37,15 @@ Instance drawn(const Instances& some, const std::string& row, const Scene& scene
 }
 
 Actor oracle(const std::string&, const DemonstratedScenes&) {
-  return [](const Environment& environment, const Scene&, const Observation&) {
-    return Move(environment.expert_action());
-  };
+  return {[](const Environment& environment, const Given&) { return Move(environment.expert_action()); }};
 }
 
 // Takes one of those that `rule` leaves of the visible objects, and handles it as the oracle would.
 template <typename Rule>
 Actor any_of(const std::string& row, const Rule& rule) {
-  return [row, rule](const Environment& environment, const Scene& scene, const Observation& observation) {
-    return Move(environment.expert_action_for(drawn(rule(visible(scene, observation)), row, scene).id));
-  };
+  return {[row, rule](const Environment& environment, const Given& given) {
+    return Move(environment.expert_action_for(drawn(rule(visible(given)), row, given.scene).id));
+  }};
 }
 
 Actor any_object(const std::string& row, const DemonstratedScenes&) {
@@ -127,22 +125,23 @@ Actor by_demonstrations(const std::string& row, Extreme which, const Demonstrate
     all.add(scene, shown.second);
     if (which == Extreme::most) of_command[scene.command].add(scene, shown.second);
   }
-  return [=](const Environment& environment, const Scene& scene, const Observation& observation) {
+  return {[=](const Environment& environment, const Given& given) {
+    const Scene& scene = given.scene;
     const auto of_its_own = of_command.find(scene.command);
     const Demonstrated& demonstrated = of_its_own == of_command.end() ? all : of_its_own->second;
-    Instances seen = visible(scene, observation);
+    Instances seen = visible(given);
     const Instance object = drawn(extreme(seen, demonstrated.taken, which), row, scene);
     Action action = environment.expert_action_for(object.id);
     seen.erase(std::remove_if(seen.begin(), seen.end(), [&](const Instance& one) { return one.id == object.id; }),
                seen.end());
     if (shown.actions.stations.all.empty() || shown.second.empty() || seen.empty()) return Move(action);
     const Instance receiver = drawn(extreme(seen, demonstrated.received, which), row + "/" + shown.second, scene);
-    if (const auto at = seen_at(shown.actions, observation, receiver.id)) {
+    if (const auto at = seen_at(shown.actions, given.observation(), receiver.id)) {
       const Stations& stations = shown.actions.stations;
       action = led_to(stations, nearest_station(stations, *at), std::move(action));
     }
     return Move(action);
-  };
+  }};
 }
 
 Actor most_demonstrated(const std::string& row, const DemonstratedScenes& shown) {

@@ -108,7 +108,7 @@ DemonstrationCache demonstration_cache(const CellJob& job, const Scenario& scena
                                            fmt::format("liblgabench_env_{}.so", job.cell.environment)};
   Json builds = Json::object();
   for (const std::string& name : take_part) builds[name] = JsonReader(job.build, "build").at(name).json();
-  const std::string world = find_environment(job.cell.environment).world_of(scenario);
+  const std::string world = scenario.environment->world_of(scenario);
   return {job.cache, builds,
           fmt::format("lgabench/{}-{}-v1{}{}", job.cell.environment, job.cell.engine, world.empty() ? "" : "/", world)};
 }
@@ -123,6 +123,16 @@ std::vector<Scene> training_scenes(const Scenario& scenario, const Cell& cell, c
     sample(scenario, cell.layout, truth, cell.training_seed, scenario.training_scenes(1));
     return {};
   }
+}
+
+// What the method is given of demonstrations: seen through an axis and with names read, where the cell asks for that.
+std::vector<Demonstration> as_given(std::vector<Demonstration> demonstrations, const std::vector<Scene>& scenes,
+                                    const Scenario& scenario, const Cell& cell, const ReadPicture& reading) {
+  if (cell.train_on) demonstrations = perceived(std::move(demonstrations), scenes, scenario, *cell.train_on);
+  if (!reading) return demonstrations;
+  for (std::size_t i = 0; i < demonstrations.size(); ++i)
+    for (Step& step : demonstrations[i].steps) step.observation = reading(step.observation, scenes.at(i));
+  return demonstrations;
 }
 
 // What a reference row looks at: training scenes, though nobody demonstrates in them.
@@ -147,6 +157,18 @@ std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell, b
     }
   }
   return scenes;
+}
+
+// Who is at fault for an action.
+const std::string& acting_id(const Competitor& method) { return method.acts ? method.acts->id : method.id; }
+
+// Who plays the test scenes: the policy, told what was selected, or a reference row; nobody where a method learned
+// nothing, as then no scene is played. All arguments outlive it.
+Actor actor_of(Policy* policy, const Method* method, const Scenario& scenario, const Cell& cell,
+               const Selected& selected) {
+  if (!policy) return method ? Actor() : reference_actor(cell.method.id, shown_to(cell, scenario));
+  const auto told = [&](const Scene& scene) { return instruction_in(scene, scenario, cell, selected.instructions); };
+  return policy_actor(*policy, told, acting_id(cell.method));
 }
 
 std::vector<Instruction> true_instructions(const Scenario& scenario) {
@@ -175,7 +197,7 @@ std::string episodes_text(const std::vector<Episode>& episodes) {
 std::string policy_text(const CellJob& job, const Policy* policy) {
   if (!job.keeps_policy || !policy) return "";
   const Competitor& method = job.cell.method;
-  const std::string id = method.acts ? method.acts->id : method.id;
+  const std::string& id = acting_id(method);
   std::string why = "the method cannot save it";
   try {
     if (const auto saved = guarded(id, [policy] { return policy->saved(); }))
@@ -251,10 +273,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   auto demonstrations = instructed(cached_demonstrations(demonstration_cache(job, scenario), *environment, scenes,
                                                          selected.needs, scenario.utterances(), count),
                                    scenes, selected);
-  if (cell.train_on) demonstrations = perceived(std::move(demonstrations), scenes, scenario, *cell.train_on);
-  if (reading)
-    for (std::size_t i = 0; i < demonstrations.size(); ++i)
-      for (Step& step : demonstrations[i].steps) step.observation = reading(step.observation, scenes.at(i));
+  demonstrations = as_given(std::move(demonstrations), scenes, scenario, cell, reading);
 
   // 4 learn: from observations and labels to a policy.
   phases.begin("learn");
@@ -266,36 +285,22 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   // 5 evaluate: the same test scenes for everyone.
   phases.begin("evaluate");
   const std::vector<TestScene> tests = test_scenes(scenario, cell, method && !policy, selected);
-  const bool perturbs = cell.perturbs();
-  const std::string& acts = cell.method.acts ? cell.method.acts->id : id;  // who is at fault for an action
-  Actor actor;
-  if (policy && perturbs)
-    actor = policy_actor(
-        *policy, [&](const Scene& scene) { return instruction_in(scene, scenario, cell, selected.instructions); },
-        acts);
-  else if (policy)
-    actor = policy_actor(*policy, selected.instructions, acts);
-  else if (!method)
-    actor = reference_actor(id, shown_to(cell, scenario));
+  PerturbedLines perturbed(scenario, cell, selected.instructions, policy.get());
+  Actor actor = actor_of(policy.get(), method.get(), scenario, cell, selected);
+  actor.reads = reading;
+  if (cell.perturbs()) actor.recorder = &perturbed;
   std::optional<Showing> showing;
-  if (policy) showing.emplace(*policy, acts);
-  std::vector<PerturbedEpisode> perturbed;
-  const Actor read = actor ? reading_actor(reading, actor) : Actor();
-  const Actor recorded = perturbs && actor ? recording_actor(actor, reading, scenario, cell, selected.instructions,
-                                                             policy.get(), perturbed)
-                                           : read;
-  std::vector<Episode> episodes = evaluate(*environment, tests, recorded, [&](int n) {
+  if (policy) showing.emplace(*policy, acting_id(cell.method));
+  std::vector<Episode> episodes = evaluate(*environment, tests, actor, [&](int n) {
     count(n);
     if (showing) showing->played(tests[static_cast<std::size_t>(n) - 1]);
   });
-  expect_declared(perturbed, episodes, policy != nullptr, axes_in(scenario));
+  expect_declared(perturbed.episodes(), episodes, policy != nullptr, scenario);
   note_takings(scenario, cell, tests, episodes);
   const Files of_method = processes ? processes->files() : Files();  // from now on the method may be told the truth
   const std::string kept = policy_text(job, policy.get());
-  const std::vector<Instruction> truth = true_instructions(scenario);
-  const Actor with_truth = policy ? policy_actor(*policy, truth, acts) : Actor();
   if (job.attributed && selecting.is_attributable())
-    attribute_failures(*environment, tests, read, with_truth, episodes, reading ? actor : Actor());
+    attribute_failures(*environment, tests, actor, true_instructions(scenario), episodes);
   if (processes) guarded(id, [processes = processes] { processes->end(); });
 
   // 6 record: no clock but in timing.json.
@@ -304,7 +309,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
               {cell_file::training, training.lines},
               {cell_file::episodes, episodes_text(episodes)},
               {cell_file::timing, canonical(phases.seconds()) + '\n'}};
-  if (perturbs) files.emplace_back(cell_file::perturbed, perturbed_text(perturbed));
+  if (cell.perturbs()) files.emplace_back(cell_file::perturbed, perturbed.text());
   record(job, self, files, of_method, showing ? showing->scenes() : std::vector<ShownScene>(), kept,
          first_error(episodes));
 }

@@ -37,7 +37,7 @@ std::unique_ptr<Policy> Selecting::learn(Method& method, const std::vector<Demon
 }
 
 void Selecting::make_errors() {
-  const std::string goal = find_environment(scenario_.environment).goal_type();
+  const std::string goal = scenario_.environment->goal_type();
   for (std::size_t c = 0; c < current_.instructions.size(); ++c) {
     Selection& selection = current_.instructions[c].selection;
     selection = with_errors(std::move(selection), scenario_, static_cast<int>(c), cell_.selection_errors,
@@ -46,8 +46,8 @@ void Selecting::make_errors() {
 }
 
 std::string Selecting::text() const {
-  const Json shown = find_environment(scenario_.environment)
-                         .shown_members(scenario_, {cell_.layout, "train", "train", cell_.training_seed});
+  const Json shown =
+      scenario_.environment->shown_members(scenario_, {cell_.layout, "train", "train", cell_.training_seed});
   Json commands = Json::array();
   for (std::size_t c = 0; c < scenario_.commands.size(); ++c) {
     const auto& [utterance, selection] = current_.instructions[c];

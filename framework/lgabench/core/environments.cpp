@@ -117,17 +117,15 @@ std::vector<std::string> EnvironmentType::layouts_of(const Scenario& scenario) c
   return find_task(*this, scenario.task).layouts;
 }
 
-std::vector<std::string> layouts_of(const Scenario& scenario) {
-  return find_environment(scenario.environment).layouts_of(scenario);
-}
+std::vector<std::string> layouts_of(const Scenario& scenario) { return scenario.environment->layouts_of(scenario); }
 
 const ActionSpace& actions_of(const Scenario& scenario) {
-  const EnvironmentType& environment = find_environment(scenario.environment);
+  const EnvironmentType& environment = *scenario.environment;
   return environment.action_space_of(find_task(environment, scenario.task));
 }
 
 int most_instances_of(const Scenario& scenario) {
-  const EnvironmentType& environment = find_environment(scenario.environment);
+  const EnvironmentType& environment = *scenario.environment;
   return environment.most_instances(find_task(environment, scenario.task));
 }
 

@@ -20,7 +20,7 @@ std::vector<BodyVariants> bodies_of_arms(const Scenario& scenario) {
   for (const Arm& arm : scenario.tests) {
     if (!arm.perturbation) continue;
     BodyVariants& of_arm = all.emplace_back();
-    for (const PerturbationAxis* axis : axes_of(scenario, *arm.perturbation)) {
+    for (const PerturbationAxis* axis : arm.axes) {
       if (!axis->bodies) continue;
       const BodyVariants own = axis->bodies(arm.perturbation->level);
       if (own.scales.size() > 1) of_arm.scales = own.scales;
@@ -162,11 +162,10 @@ std::string lacking(const Scenario& scenario, const Perturbation& perturbation) 
 
 std::vector<const PerturbationAxis*> axes_of(const Scenario& scenario, const Perturbation& perturbation) {
   std::vector<const PerturbationAxis*> axes = axes_named(perturbation.axis, scenario.axes);
-  axes.erase(std::remove_if(axes.begin(), axes.end(),
-                            [&](const PerturbationAxis* axis) {
-                              return !lacking(scenario, {axis->id, perturbation.level}).empty();
-                            }),
-             axes.end());
+  const auto is_lacking = [&](const PerturbationAxis* axis) {
+    return axis->lacks && !axis->lacks(scenario, perturbation.level).empty();
+  };
+  axes.erase(std::remove_if(axes.begin(), axes.end(), is_lacking), axes.end());
   return axes;
 }
 
@@ -188,8 +187,7 @@ int more_bodies(const Scenario& scenario) {
 
 Scene perturbed(Scene scene, const Scenario& scenario, std::optional<std::uint64_t> training_seed) {
   const Arm& arm = scenario.arm(scene.arm);
-  if (!arm.perturbation) return scene;
-  for (const PerturbationAxis* axis : axes_of(scenario, *arm.perturbation)) {
+  for (const PerturbationAxis* axis : arm.axes) {
     if (!axis->change) continue;
     // Its own statement: as an argument it could read the scene after the move.
     const RandomStream stream = perturbation_stream(axis->id, scene, training_seed);
@@ -230,16 +228,13 @@ void expect_shown(const JsonReader& perturbation, const std::vector<const Pertur
 
 const PerturbationAxis* instructing_axis(const Scenario& scenario) {
   for (const Arm& arm : scenario.tests)
-    if (arm.perturbation)
-      for (const PerturbationAxis* axis : axes_of(scenario, *arm.perturbation))
-        if (axis->other) return axis;
+    for (const PerturbationAxis* axis : arm.axes)
+      if (axis->other) return axis;
   return nullptr;
 }
 
 int command_given(const Scene& scene, const Scenario& scenario, std::optional<std::uint64_t> training_seed) {
-  const std::optional<Perturbation>& perturbation = scenario.arm(scene.arm).perturbation;
-  if (!perturbation) return scene.command;
-  for (const PerturbationAxis* axis : axes_of(scenario, *perturbation)) {
+  for (const PerturbationAxis* axis : scenario.arm(scene.arm).axes) {
     if (!axis->other) continue;
     RandomStream stream = perturbation_stream(axis->id, scene, training_seed);
     std::vector<int> added;

@@ -96,7 +96,8 @@ std::vector<std::string> perturbation_ids(const PluginAxes& more = plugin_axes()
 /// The axis of that id, or every one of lgabench's own for `all`. @throws InputError that lists the known ones.
 std::vector<const PerturbationAxis*> axes_named(const std::string& id, const PluginAxes& more = plugin_axes());
 
-/// The axes by which the arm's scenes differ; of `all`, those that the scenario can have.
+/// The axes of a perturbation of the scenario's: of `all`, those that the scenario can have. An arm that was read has
+/// its own.
 std::vector<const PerturbationAxis*> axes_of(const Scenario& scenario, const Perturbation& perturbation);
 /// Why the scenario cannot have the axis, in a few words; "" where it can. Every scenario can have `all`.
 std::string lacking(const Scenario& scenario, const Perturbation& perturbation);

@@ -92,10 +92,9 @@ void expect_words(const JsonReader& commands, const Scenario& scenario) {
 }
 
 // What the arm's axis gives in place of its commands; none where it leaves them.
-std::vector<std::string> words_of(const Scenario& scenario, const Arm& arm) {
-  if (arm.perturbation)
-    for (const PerturbationAxis* axis : axes_of(scenario, *arm.perturbation))
-      if (axis->words) return axis->words(arm.perturbation->level);
+std::vector<std::string> words_of(const Arm& arm) {
+  for (const PerturbationAxis* axis : arm.axes)
+    if (axis->words) return axis->words(arm.perturbation->level);
   return {};
 }
 
@@ -107,7 +106,7 @@ void expect_arms(const JsonReader& commands, const Scenario& scenario) {
   const std::vector<JsonReader> all = commands.elements();
   for (std::size_t i = 0; i < all.size(); ++i) {
     const ScenarioCommand& command = scenario.commands[i];
-    const auto gives = [&](const Arm& arm) { return arm.id == command.arm && !words_of(scenario, arm).empty(); };
+    const auto gives = [&](const Arm& arm) { return arm.id == command.arm && !words_of(arm).empty(); };
     const bool added = std::any_of(scenario.tests.begin(), scenario.tests.end(), gives);
     if (all[i].has("arm") && !added && std::count(unseen.begin(), unseen.end(), command.arm) == 0)
       all[i].at("arm").fail(fmt::format("an arm with \"unseen\": true ({})", fmt::join(unseen, ", ")));
@@ -126,7 +125,7 @@ void add_words(Scenario& scenario) {
   for (const Arm& arm : scenario.tests) {
     const auto is_there = [&arm](const ScenarioCommand& command) { return command.arm == arm.id; };
     if (std::any_of(scenario.commands.begin(), scenario.commands.end(), is_there)) continue;
-    for (const std::string& utterance : words_of(scenario, arm)) {
+    for (const std::string& utterance : words_of(arm)) {
       scenario.json["commands"].push_back(
           {{"utterance", utterance}, {"truth", nothing}, {"seen", false}, {"arm", arm.id}});
       const JsonReader added(scenario.json["commands"].back(), scenario.id);
@@ -176,12 +175,13 @@ void expect_control(const JsonReader& file, const JsonReader& arm) {
   if (control != same) arm.at("perturbation").fail("the other members of the first arm, its control");
 }
 
-// What of its scenes, and of its command, an arm's perturbation changes.
+// The axes of an arm's perturbation, and what of its command they change.
 void read_change(const JsonReader& arm, const Scenario& scenario, Arm& read) {
   if (const std::string lack = lacking(scenario, *read.perturbation); !lack.empty())
     throw InputError(
         fmt::format("{}: {}: {}: {}", arm.file(), arm.at("perturbation").place(), read.perturbation->axis, lack));
-  for (const PerturbationAxis* axis : axes_of(scenario, *read.perturbation))
+  read.axes = axes_of(scenario, *read.perturbation);
+  for (const PerturbationAxis* axis : read.axes)
     if (axis->rewords) read.wording = read.perturbation->level;
 }
 
@@ -244,8 +244,8 @@ Scenario read_scenario(const Json& json, const std::string& file) {
   const JsonReader reader(json, file);
   Scenario s;
   s.id = reader.at("id").string();
-  s.environment = reader.at("environment").string();
   const EnvironmentType& environment = named(reader.at("environment"), find_environment);
+  s.environment = &environment;
   const TaskInfo& task =
       named(reader.at("task"), [&](const std::string& id) -> const TaskInfo& { return find_task(environment, id); });
   s.task = task.id;
@@ -282,7 +282,7 @@ Scenario read_scenario(const Json& json, const std::string& file) {
     if (std::count_if(s.tests.begin(), s.tests.end(), same) > 1) arm.at("arm").fail("each arm once");
     if (s.tests.back().perturbation) {
       expect_control(reader, arm);
-      expect_shown(arm.at("perturbation"), axes_named(s.tests.back().perturbation->axis, s.axes), s.environment,
+      expect_shown(arm.at("perturbation"), axes_named(s.tests.back().perturbation->axis, s.axes), environment.id(),
                    environment.has_views());
       read_change(arm, s, s.tests.back());
     }

@@ -31,6 +31,9 @@ struct Perturbation {
   int level = 0;
 };
 
+class EnvironmentType;
+struct PerturbationAxis;
+
 /// Test scenes of one kind, played by one policy. Arms share their random streams: scene i of each has one layout.
 struct Arm {
   std::string id;
@@ -38,22 +41,25 @@ struct Arm {
   bool unseen = false;                            // give the unseen commands instead of the seen ones
   double label_noise = 0, missed_segment = 0;     // how imperfect the textualization is (see textualization.hpp)
   std::optional<Perturbation> perturbation = {};  // of the scenes of the scenario's first arm, its control
-  int wording = 0;                                // above 0: gives the command in those other words
+  /// The axes that make this difference, in the order in which they do; of `all`, those that the scenario can have.
+  /// Those of plugins live as long as the scenario.
+  std::vector<const PerturbationAxis*> axes = {};
+  int wording = 0;  // above 0: gives the command in those other words
 };
 
 /// Which true distributions hold: the annotations that the paper's authors released with their code, where there are
 /// any, or those that the paper's appendix prints.
 enum class Truth { released, printed };
 
-struct PerturbationAxis;
 /// Axes that plugins add. Whoever runs such a plugin sets what its axis perceives.
 using PluginAxes = std::vector<std::shared_ptr<PerturbationAxis>>;
 
 /// A task with its commands, what is shown and what is tested. A value; read from scenarios/ID.json.
 struct Scenario {
-  std::string id, environment;
-  std::string task;                  // an id of the environment's list
-  std::optional<SecondRole> second;  // the task's
+  std::string id;
+  const EnvironmentType* environment = nullptr;  // never null once read
+  std::string task;                              // an id of the environment's list
+  std::optional<SecondRole> second;              // the task's
   FeatureSpace space;
   std::vector<ScenarioCommand> commands;
   std::string answers_of;  // the scenario whose recorded answers hold for this one; mostly its own id

@@ -110,16 +110,11 @@ void expect_read(const Suite& suite, const Scenario& scenario, const std::vector
       throw InputError(fmt::format("{}: /names{}: scenario {}: {}", suite.file, reading.suffix(), scenario.id, why));
 }
 
-std::vector<const PerturbationAxis*> axes_in(const Scenario& scenario, const std::string& arm) {
-  const std::optional<Perturbation>& perturbation = scenario.arm(arm).perturbation;
-  return perturbation ? axes_of(scenario, *perturbation) : std::vector<const PerturbationAxis*>();
-}
-
 // A perturbation of what the engine does not simulate would be none.
 void expect_dynamics(const Scenario& scenario, const PluginInfo& engine) {
   if (!engine.kinematic) return;
   for (const std::string& id : played_arms(scenario.json))
-    for (const PerturbationAxis* axis : axes_in(scenario, id)) {
+    for (const PerturbationAxis* axis : scenario.arm(id).axes) {
       const BodyVariants bodies = axis->bodies ? axis->bodies(scenario.arm(id).perturbation->level) : BodyVariants();
       if (bodies.friction != 1 || bodies.mass != 1)
         throw InputError(
@@ -176,8 +171,8 @@ void expect_layouts(const Scenario& scenario, const std::vector<std::string>& la
   const std::vector<std::string> there = layouts_of(scenario);
   for (const std::string& layout : layouts)
     if (!contains(there, layout))
-      throw InputError(
-          fmt::format("scenario {} ({}): {}", scenario.id, scenario.environment, none_named("layout", layout, there)));
+      throw InputError(fmt::format("scenario {} ({}): {}", scenario.id, scenario.environment->id(),
+                                   none_named("layout", layout, there)));
 }
 
 }  // namespace
@@ -214,9 +209,9 @@ Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, 
     variant = named.first;
   }
   const Scenario scenario = load_scenario(base, truth);
-  if (scenario.environment != suite.environment)
+  if (scenario.environment->id() != suite.environment)
     throw InputError(fmt::format("{}: /scenarios: \"{}\" is a scenario of {}, expected {}", suite.file, id,
-                                 scenario.environment, suite.environment));
+                                 scenario.environment->id(), suite.environment));
   Json json = scenario.json;
   if (!suite.train.empty()) json["train"].update(suite.train);
   const Json scenes = suite.scenes.count(base) ? suite.scenes.at(base) : Json::object();

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include <lgabench/abstraction/prompt.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/shipped.hpp>
@@ -125,10 +126,10 @@ Json data_hashes(const Scenario& scenario, const AnswerSource& answers, const Re
   Json hashes{{"feature_space", shipped_sha256(data / "spaces" / (scenario.space.id + ".json"))},
               {"answers", folder_hash("answers")},
               {"embeddings", folder_hash("embeddings")}};
-  if (fs::is_directory(data / scenario.environment)) hashes["environment"] = folder_hash(scenario.environment);
+  const std::string& environment = scenario.environment->id();
+  if (fs::is_directory(data / environment)) hashes["environment"] = folder_hash(environment);
   if (std::holds_alternative<LiveAnswers>(answers)) hashes["prompt"] = PromptTemplate().version();
-  if (const fs::path file = reader_file(scenario.environment, reading); !file.empty())
-    hashes["reader"] = shipped_sha256(file);
+  if (const fs::path file = reader_file(environment, reading); !file.empty()) hashes["reader"] = shipped_sha256(file);
   return hashes;
 }
 

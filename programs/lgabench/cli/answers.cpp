@@ -16,8 +16,8 @@
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/harness/expand.hpp>
 #include <lgabench/harness/suite.hpp>
+#include <lgabench/harness/expand.hpp>
 #include <lgabench/record/answer_source.hpp>
 
 namespace lgabench::cli {

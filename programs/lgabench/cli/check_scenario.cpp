@@ -18,9 +18,9 @@
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/counted_progress.hpp>
-#include <lgabench/harness/expand.hpp>
 #include <lgabench/harness/missing_encoder.hpp>
 #include <lgabench/harness/suite.hpp>
+#include <lgabench/harness/expand.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench::cli {
@@ -154,7 +154,7 @@ int check_scenario(const CheckScenarioArguments& a) {
   const PluginInfo& engine = a.engine.empty() ? default_engine(catalogue) : catalogue.find("engine", a.engine);
   const auto environment = make_environment(scenario, load_engine(engine));
   CheckReport report;
-  report.ok("file", fmt::format("{} in {}, {} command(s), {} arm(s)", scenario.task, scenario.environment,
+  report.ok("file", fmt::format("{} in {}, {} command(s), {} arm(s)", scenario.task, scenario.environment->id(),
                                 scenario.commands.size(), scenario.tests.size()));
   std::vector<std::string> arms{"train"};
   for (const Arm& arm : scenario.tests) arms.push_back(arm.id);

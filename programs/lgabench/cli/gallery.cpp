@@ -56,7 +56,7 @@ Tile alone(const JsonReader& object) {
   SceneObject shown = *scene.find(role::target);
   shown.object_type = object.at("object_type").string(), shown.texture = object.at("texture").string();
   scene.objects = {shown};
-  const Observation seen = find_environment(scenario.environment).draw(scene);
+  const Observation seen = scenario.environment->draw(scene);
   int left = seen.size.columns, right = 0, top = seen.size.rows, bottom = 0;
   for (int row = 0; row < seen.size.rows; ++row)
     for (int column = 0; column < seen.size.columns; ++column)
@@ -137,14 +137,13 @@ std::vector<Tile> perturbed() {
   std::vector<Tile> tiles;
   for (const Arm& arm : scenario.tests) {
     if (!arm.perturbation) continue;
-    const auto& [axis, level] = *arm.perturbation;
-    const std::vector<const PerturbationAxis*> axes = axes_named(axis);
     const auto shows = [](const PerturbationAxis* one) {
       return one->touches(EpisodePart::rgb) || one->touches(EpisodePart::ids);
     };
-    if (std::none_of(axes.begin(), axes.end(), shows)) continue;
+    if (std::none_of(arm.axes.begin(), arm.axes.end(), shows)) continue;
     tiles.push_back(scene_and_mask(scenario, layout, arm.id, shown, widest_picture / 2));
-    const std::string what = axes.size() == 1 ? axes.front()->levels[static_cast<std::size_t>(level - 1)] : "each";
+    const auto level = static_cast<std::size_t>(arm.perturbation->level);
+    const std::string what = arm.axes.size() == 1 ? arm.axes.front()->levels[level - 1] : "each";
     tiles.back().caption = fmt::format("`{}`: {}", arm.id, what);
   }
   return tiles;
@@ -153,7 +152,7 @@ std::vector<Tile> perturbed() {
 }  // namespace
 
 Observation drawn_in_arm(const Scenario& scenario, const Scene& scene) {
-  const EnvironmentType& environment = find_environment(scenario.environment);
+  const EnvironmentType& environment = *scenario.environment;
   Observation seen = environment.draw(scene, view_of(scenario, scene));
   if (scene.arm != "train" && scenario.arm(scene.arm).perturbation)
     if (const Perception perception = perception_of(scenario, scenario.arm(scene.arm))) seen = perception(seen, scene);
@@ -192,10 +191,10 @@ Sheet gallery(const std::string& what) {
   if (contains(environments, environment)) {
     for (const std::string& id : scenario_ids()) {
       const Scenario scenario = load_scenario(id);
-      if (scenario.environment != environment || id.rfind("drawn_", 0) == 0) continue;  // a hundred of one grammar
+      if (scenario.environment->id() != environment || id.rfind("drawn_", 0) == 0)
+        continue;  // a hundred of one grammar
       const std::string layout = layouts_of(scenario).front();
-      const bool stands_freely_alone =
-          layout != find_task(find_environment(environment), scenario.task).layouts.front();
+      const bool stands_freely_alone = layout != find_task(*scenario.environment, scenario.task).layouts.front();
       if (stands_freely_alone != words) continue;
       for (const Arm& arm : scenario.tests)
         if (!in_other_words(scenario, arm)) tiles.push_back(scene_and_mask(scenario, layout, arm.id));

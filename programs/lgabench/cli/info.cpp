@@ -58,7 +58,7 @@ std::string names(const std::vector<std::string>& chosen, const std::vector<std:
 }
 
 void print_info(const Scenario& scenario) {
-  to_stdout("{}, a scenario in {}\n  task        {}\n", scenario.id, scenario.environment, scenario.task);
+  to_stdout("{}, a scenario in {}\n  task        {}\n", scenario.id, scenario.environment->id(), scenario.task);
   const auto print_set = [&scenario](const char* role, const FeatureSet& set) {
     to_stdout("  {:<10}  {}; textures: {}\n", role, names(set.object_types, scenario.space.object_types),
               names(set.textures, scenario.space.textures));

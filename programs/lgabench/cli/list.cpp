@@ -175,7 +175,7 @@ std::set<std::string> preset_words(const std::vector<Suite>& suites) {
 std::set<std::string> listed_words(const Json& section, const Suite* of) {
   std::set<std::string> found;
   for (const Json& row : section)
-    if (!of || load_scenario(row.at("id")).environment == of->environment) found.insert(row.at("id"));
+    if (!of || load_scenario(row.at("id")).environment->id() == of->environment) found.insert(row.at("id"));
   return found;
 }
 

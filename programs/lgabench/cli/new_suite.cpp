@@ -77,7 +77,7 @@ Json suite_json(const NewSuiteArguments& a, const std::vector<Scenario>& scenari
             {"main_arm", scenarios.front().tests.front().id},
             {"arms", arms},
             {"arm_titles", titles}}},
-          {"environment", scenarios.front().environment},
+          {"environment", scenarios.front().environment->id()},
           {"scenarios", ids},
           {"layouts", {layout_of(scenarios)}},
           {"engines", {default_engine(scan_plugins(plugin_directories())).id}},

@@ -55,9 +55,8 @@ std::string targets(const Scene& scene, const Observation& seen) {
 }
 
 // Its axis perceives in cells of a run alone: such an arm is drawn as its control.
-bool is_of_plugin(const Scenario& scenario, const Arm& arm) {
-  const auto axes = arm.perturbation ? axes_of(scenario, *arm.perturbation) : std::vector<const PerturbationAxis*>();
-  return std::any_of(axes.begin(), axes.end(), [](const PerturbationAxis* axis) { return axis->of_plugin; });
+bool is_of_plugin(const Arm& arm) {
+  return std::any_of(arm.axes.begin(), arm.axes.end(), [](const PerturbationAxis* axis) { return axis->of_plugin; });
 }
 
 class Pictures {
@@ -71,12 +70,11 @@ class Pictures {
   Json draw(const PictureRequest& request) {
     const PlayedScenes::Played& played = scenes_.cell(request.cell.string());
     const Scene scene = PlayedScenes::scene(played, request.arm, request.index, request.scene);
-    const EnvironmentType& type = find_environment(played.scenario.environment);
+    const EnvironmentType& type = *played.scenario.environment;
     const Observation seen = type.draw(scene);
     const Arm& arm = played.scenario.arm(request.arm);
-    const Perception perception = is_of_plugin(played.scenario, arm)
-                                      ? nullptr
-                                      : perception_of(played.scenario, arm, played.cell.scenes_of_seed());
+    const Perception perception =
+        is_of_plugin(arm) ? nullptr : perception_of(played.scenario, arm, played.cell.scenes_of_seed());
     const View view = view_of(played.scenario, scene, played.cell.scenes_of_seed());
     Observation perceived = view == View() ? seen : type.draw(scene, view);
     if (perception) perceived = perception(perceived, scene);

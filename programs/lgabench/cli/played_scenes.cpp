@@ -38,10 +38,10 @@ Scene PlayedScenes::scene(const Played& played, const std::string& arm, int inde
 }
 
 Environment* PlayedScenes::on(const std::string& engine, const Scenario& scenario) {
-  std::string world = scenario.space.id + find_environment(scenario.environment).world_of(scenario);
+  std::string world = scenario.space.id + scenario.environment->world_of(scenario);
   for (const BodyVariant& body : body_variants(scenario))  // all of which one world holds, as it did in the cell
     world += fmt::format(" {},{},{}", body.scale, body.friction, body.mass);
-  std::unique_ptr<Environment>& made = environments_[{engine, scenario.environment, std::move(world)}];
+  std::unique_ptr<Environment>& made = environments_[{engine, scenario.environment->id(), std::move(world)}];
   if (made) return made.get();
   try {
     made = make_environment(scenario, load_engine(catalogue_.find("engine", engine)));

@@ -223,7 +223,7 @@ void print_reading_scores(const Suite& suite, Truth truth, const ReadingArgument
         if (const std::string why = why_not_read(scenario, by_reader); !why.empty())
           throw InputError(fmt::format("{}: scenario {}: {}", suite.id, id, why));
         const ReadPicture read = reading_of(scenario, by_reader);
-        const EnvironmentType& environment = find_environment(scenario.environment);
+        const EnvironmentType& environment = *scenario.environment;
         for (const Arm& arm : scenario.tests) {
           if (!a.arms.empty() && !contains(a.arms, arm.id)) continue;
           auto row = std::find_if(arms.begin(), arms.end(), [&](const auto& one) { return one.first == arm.id; });

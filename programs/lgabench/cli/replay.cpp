@@ -146,7 +146,7 @@ Played play(const Catalogue& catalogue, const Recorded& recorded, int zoom) {
   if (hex(scene.hash()) != episode.scene)
     throw InputError("replay: this version samples another scene than the run played");
 
-  const EnvironmentType& type = find_environment(scenario.environment);
+  const EnvironmentType& type = *scenario.environment;
   const auto enlarged = [&](const Observation& seen, const std::vector<std::uint8_t>& mask) {
     Picture picture(zoom * seen.size.columns, zoom * seen.size.rows);
     picture.paste(0, 0, seen.size.columns, seen.size.rows, zoom, [&](int column, int row) {

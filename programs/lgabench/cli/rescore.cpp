@@ -77,8 +77,8 @@ Rescored by_physics(Environment& environment, const Scene& scene, const Episode&
 // The farther of an action's two ends from the oracle's, of the target for which that is least.
 Rescored by_pose(Environment& environment, const Scene& scene, const Scenario& scenario, const Episode& episode,
                  const PoseTolerance& within) {
-  const EnvironmentType& type = find_environment(scenario.environment);
-  const TaskInfo& task = task_judged_by_pose(scenario.environment, scenario.task);
+  const EnvironmentType& type = *scenario.environment;
+  const TaskInfo& task = task_judged_by_pose(type.id(), scenario.task);
   environment.reset(scene);
   bool near = false;
   std::optional<double> distance_m;
@@ -200,7 +200,7 @@ int rescore(const RescoreArguments& a) {
     progress.tell_next();
     if (cell.failed) continue;
     const PlayedScenes::Played& played = scenes.cell((a.run / "cells" / cell.key / cell_file::configuration).string());
-    if (a.judge == "pose") task_judged_by_pose(played.scenario.environment, played.scenario.task);
+    if (a.judge == "pose") task_judged_by_pose(played.scenario.environment->id(), played.scenario.task);
     for (const std::string& arm : cell.arms) {
       const auto is_row = [&](const ByRow& one) {
         return one.row == cell.method && one.arm == arm && one.demonstrations == cell.demonstrations;

@@ -39,7 +39,7 @@ std::string strip(PlayedScenes& scenes, const PictureRequest& request, std::size
   Environment* const environment = scenes.on(end.engine, played.scenario);
   if (!environment) throw InputError("the run's engine is not installed: " + end.engine);
   const Observation before = environment->reset(scene);
-  const ActionSpace& space = find_environment(played.scenario.environment).action_space();
+  const ActionSpace& space = played.scenario.environment->action_space();
   const int step = page_step(before.size), columns = before.size.columns / step, rows = before.size.rows / step;
   const auto pixel = [&](int column, int row) {
     return static_cast<std::size_t>(step * row * before.size.columns + step * column);

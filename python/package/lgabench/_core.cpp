@@ -99,7 +99,7 @@ class Player {
   Player(std::shared_ptr<const Scenario> scenario, const std::string& engine, std::string layout, bool shadows = false)
       : scenario_(std::move(scenario)),
         layout_(std::move(layout)),
-        type_(&find_environment(scenario_->environment)),
+        type_(scenario_->environment),
         environment_(made(*scenario_, engine)) {
     environment_->show_shadows(shadows);
   }
@@ -431,7 +431,7 @@ NB_MODULE(_core, m) {
            [](const Scenario& s, int i) { return canonical(distribution_json(s.commands.at(size(i)).truth)); })
       .def_prop_ro("picture_size",
                    [](const Scenario& s) {
-                     const PictureSize size = find_environment(s.environment).picture_size();
+                     const PictureSize size = s.environment->picture_size();
                      return std::pair(size.rows, size.columns);
                    })
       .def_prop_ro("most_instances", &most_instances_of)
