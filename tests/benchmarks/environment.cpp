@@ -9,7 +9,7 @@
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/scenario.hpp>
-#include <lgabench/harness/expand.hpp>
+#include <lgabench/harness/suite_scenario.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <mobile/renderer.hpp>
 #include <mobile/sampler.hpp>

@@ -13,6 +13,7 @@
 #include <lgabench/harness/run_directory.hpp>
 #include <lgabench/harness/schedule.hpp>
 #include <lgabench/harness/suite.hpp>
+#include <lgabench/harness/suite_scenario.hpp>
 #include <lgabench/harness/worker_pool.hpp>
 #include <tabletop/content.hpp>
 

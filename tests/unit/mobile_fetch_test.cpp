@@ -8,7 +8,7 @@
 
 #include <lgabench/core/hash.hpp>
 #include <lgabench/harness/suite.hpp>
-#include <lgabench/harness/expand.hpp>
+#include <lgabench/harness/suite_scenario.hpp>
 #include <mobile/fetch.hpp>
 #include <mobile/mobile.hpp>
 #include <mobile/near_misses.hpp>

@@ -16,7 +16,7 @@
 #include <lgabench/cell/steps.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/perturbations.hpp>
-#include <lgabench/harness/expand.hpp>
+#include <lgabench/harness/suite_scenario.hpp>
 
 #include "testing.hpp"
 

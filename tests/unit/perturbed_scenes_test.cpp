@@ -11,6 +11,7 @@
 #include <lgabench/cell/run_cell.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/harness/expand.hpp>
+#include <lgabench/harness/suite_scenario.hpp>
 
 #include "../engine_under_test.hpp"
 #include "../forwarding_world.hpp"

@@ -9,6 +9,7 @@
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/harness/expand.hpp>
 #include <lgabench/harness/suite.hpp>
+#include <lgabench/harness/suite_scenario.hpp>
 #include <tabletop/content.hpp>
 #include <tabletop/sampler.hpp>
 #include <tabletop/tabletop.hpp>

@@ -10,7 +10,7 @@
 
 #include <common/objects.hpp>
 #include <lgabench/harness/suite.hpp>
-#include <lgabench/harness/expand.hpp>
+#include <lgabench/harness/suite_scenario.hpp>
 #include <lgabench/statistics/statistics.hpp>
 #include <tabletop/content.hpp>
 #include <tabletop/sampler.hpp>

@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include <lgabench/abstraction/selection_errors.hpp>
 #include <lgabench/core/contains.hpp>
@@ -11,6 +13,7 @@
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/suggest.hpp>
 #include <lgabench/harness/competitors.hpp>
+#include <lgabench/harness/suite_scenario.hpp>
 #include <lgabench/record/reference_rows.hpp>
 
 namespace lgabench {
@@ -48,36 +51,6 @@ void expect_own_scenes(const Suite& suite, const Design& design, const Scenario&
         fmt::format("{}: /test_scenes: expected per_seed, since \"members\" gives each training seed "
                     "scenes of its own",
                     suite.file));
-}
-
-// The first `count` of those that are demonstrated, and all others.
-Json first_commands(const Json& commands, std::size_t count) {
-  Json some = Json::array();
-  for (const Json& command : commands) {
-    const bool demonstrated = command.value("seen", true);
-    if (!demonstrated || count > 0) some.push_back(command);
-    if (demonstrated && count > 0) --count;
-  }
-  return some;
-}
-
-// To the scenario's command other ways to say it, with the answers to all of them: of one model.
-void add_wordings(const Suite& suite, const std::string& id, Json& json) {
-  const std::string other = suite.paraphrases.at(id);
-  const Scenario from = load_scenario(other);
-  if (from.commands.front().utterance != json["commands"].front().at("utterance"))
-    throw InputError(fmt::format("{}: /paraphrases/{}: expected a scenario whose first command is {}, got {} of {}",
-                                 suite.file, id, canonical(json["commands"].front().at("utterance")),
-                                 canonical(Json(from.commands.front().utterance)), other));
-  int wording = 0;
-  for (Json command : from.json.at("commands")) {
-    if (command.value("seen", true)) continue;
-    command.erase("arm");
-    command["wording"] = ++wording;
-    json["commands"].push_back(std::move(command));
-  }
-  json["answers"] = from.json.value("answers", Json{{"recorded", from.recorded}});
-  json["answers_of"] = from.answers_of;
 }
 
 // Errors can only be made in what is one product.
@@ -175,6 +148,95 @@ void expect_layouts(const Scenario& scenario, const std::vector<std::string>& la
                                    none_named("layout", layout, there)));
 }
 
+// A row of a run's table: a method with the errors that are made in what it selects, what its names are read by, and
+// the person who answers for it; or a reference row.
+struct Row {
+  Competitor method;  // named as the row is
+  SelectionErrors errors = {};
+  Reading reading = {};
+  std::optional<CellParticipant> participant = {};
+};
+
+std::vector<Row> method_rows(const Suite& suite, const std::vector<Competitor>& methods,
+                             const std::vector<SelectionErrors>& all_errors, const std::vector<Reading>& readings) {
+  std::vector<Row> rows;
+  for (const Competitor& method : methods)
+    for (const SelectionErrors& errors : all_errors) {
+      if (!errors.none() && contains(suite.selects_nothing, method.id)) continue;
+      for (const Reading& reading : readings) {
+        rows.push_back({method, errors, reading});
+        rows.back().method.name += errors.suffix() + reading.suffix();
+      }
+    }
+  return rows;
+}
+
+std::vector<Row> rows_of_references(const Suite& suite) {
+  std::vector<Row> rows;
+  for (const ReferenceRow& row : reference_rows())
+    if (row.in_every_suite || contains(suite.references, row.id))
+      rows.push_back({{"reference", row.id, row.id, "1", Json::object()}});
+  return rows;
+}
+
+// The rows that the scenario has: one for each person, where people answer.
+std::vector<Row> rows_in(const Scenario& scenario, const std::vector<Row>& rows,
+                         const std::vector<Participant>& people) {
+  std::vector<Row> all;
+  for (const Row& row : rows)
+    for (const auto& participant : participants(row.method, scenario, people)) {
+      all.push_back(row);
+      all.back().participant = participant;
+    }
+  return all;
+}
+
+// Where rows play: a scenario in one layout on one engine.
+struct Place {
+  const Scenario& scenario;
+  Cell cell;  // of no row yet
+};
+
+Cell cell_of(const Place& place, const Row& row, int demonstrations, std::uint64_t training_seed) {
+  Cell cell = place.cell;
+  cell.method = row.method;
+  cell.selection_errors = row.errors;
+  cell.reading = row.reading;
+  if (!row.reading.none()) cell.data = data_hashes(place.scenario, cell.answers, row.reading);
+  if (row.method.is_reference()) cell.train_on.reset();
+  cell.participant = row.participant;
+  cell.demonstrations = demonstrations;
+  cell.training_seed = training_seed;
+  return cell;
+}
+
+std::vector<Cell> cells_at(const Place& place, const std::vector<Row>& methods, const std::vector<Row>& references,
+                           const Design& design) {
+  std::vector<Cell> cells;
+  for (const int n : design.demonstrations)
+    for (const std::uint64_t seed : design.seeds) {
+      for (const Row& row : methods) cells.push_back(cell_of(place, row, n, seed));
+      for (const Row& row : references)
+        if (learns(row.method) && n > 0) cells.push_back(cell_of(place, row, n, seed));
+    }
+  for (const Row& row : references) {
+    if (learns(row.method)) continue;
+    for (const std::uint64_t seed : scene_sets(design.test_scenes, design.seeds))
+      cells.push_back(cell_of(place, row, 0, seed));
+  }
+  return cells;
+}
+
+// The suite's scenario with the arms that are asked for, and their control.
+Scenario played_scenario(const Suite& suite, const std::string& id, const Design& design, const Variation& variation) {
+  Scenario scenario = suite_scenario(suite, id, variation.truth, &design);
+  if (!variation.played) return scenario;
+  const std::string control = scenario.tests.front().id;
+  for (const Arm& arm : scenario.tests)
+    if (arm.id == control || plays(*variation.played, arm)) scenario.json["played"].push_back(arm.id);
+  return scenario;
+}
+
 }  // namespace
 
 Cell unplayed_cell(const Suite& suite, const Design& design, const Scenario& scenario, const AnswerSource& answers) {
@@ -189,75 +251,6 @@ Cell unplayed_cell(const Suite& suite, const Design& design, const Scenario& sce
   cell.data = data_hashes(scenario, cell.answers, cell.reading);
   cell.smoke = design.smoke;
   return cell;
-}
-
-std::vector<std::string> suite_scenario_ids(const Suite& suite, const Design& design) {
-  if (suite.variants.empty()) return design.scenarios;
-  std::vector<std::string> ids;
-  for (const std::string& id : design.scenarios)
-    for (const auto& variant : suite.variants) ids.push_back(fmt::format("{}_{}", id, variant.first));
-  return ids;
-}
-
-Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, const Design* of) {
-  const Design& design = of ? *of : suite.design;
-  std::string base = id, variant;
-  for (const auto& named : suite.variants) {
-    const std::string end = "_" + named.first;
-    if (id.size() <= end.size() || id.compare(id.size() - end.size(), end.size(), end) != 0) continue;
-    base = id.substr(0, id.size() - end.size());
-    variant = named.first;
-  }
-  const Scenario scenario = load_scenario(base, truth);
-  if (scenario.environment->id() != suite.environment)
-    throw InputError(fmt::format("{}: /scenarios: \"{}\" is a scenario of {}, expected {}", suite.file, id,
-                                 scenario.environment->id(), suite.environment));
-  Json json = scenario.json;
-  if (!suite.train.empty()) json["train"].update(suite.train);
-  const Json scenes = suite.scenes.count(base) ? suite.scenes.at(base) : Json::object();
-  if (!scenes.empty()) json["train"].update(scenes);
-  if (suite.paraphrases.count(base)) add_wordings(suite, base, json);
-  if (suite.answers.count(base)) json["answers"] = {{"recorded", suite.answers.at(base)}};
-  const SuiteVariant changes = variant.empty() ? SuiteVariant() : suite.variants.at(variant);
-  if (!changes.train.empty()) json["train"].update(changes.train);
-  if (changes.commands) json["commands"] = first_commands(json["commands"], *changes.commands);
-  const Json first = json["tests"].front();
-  if (suite.only_arms) json["tests"] = Json::array();
-  for (const SuiteArm& arm : changes.arms.value_or(suite.arms)) {
-    if (contains(arm.except, base) || contains(arm.except, id) ||
-        (!design.arms.empty() && !contains(design.arms, arm.id)))
-      continue;
-    json["tests"].push_back(first);
-    json["tests"].back().update(arm.members);
-    json["tests"].back().update(scenes);
-    if (suite.near_miss.count(base) && arm.members.value("near_miss", Json()) == Json(true))
-      json["tests"].back()["near_miss"] = suite.near_miss.at(base);
-  }
-  const Json control = json["tests"].front();
-  for (const DesignAxis& axis : design.perturbations) {
-    if (axis.except && contains(*axis.except, base)) continue;
-    for (const int level : axis.levels) {
-      const Perturbation one{axis.axis, level};
-      json["tests"].push_back(control);
-      json["tests"].back().update({{"arm", arm_of(one)}, {"perturbation", {{one.axis, one.level}}}});
-    }
-  }
-  if (!variant.empty()) {
-    json["id"] = id;
-    json["answers_of"] = scenario.answers_of;
-    for (Json& arm : json["tests"]) arm["arm"] = arm["arm"].get<std::string>() + "_" + variant;
-  }
-  return read_scenario(json, fmt::format("{}: scenario {} with the suite's members", suite.file, id));
-}
-
-SuiteArms arms_of(const Suite& suite, const Design& design) {
-  SuiteArms all;
-  for (const std::string& id : suite_scenario_ids(suite, design))
-    for (const Arm& arm : suite_scenario(suite, id, Truth::released, &design).tests) {
-      if (!contains(all.ids, arm.id)) all.ids.push_back(arm.id);
-      if (arm.perturbation) all.axes[arm.perturbation->axis].insert(arm.perturbation->level);
-    }
-  return all;
 }
 
 Json to_json(const PlayedArms& played) {
@@ -281,62 +274,29 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
   if (!variation.participants.empty() && std::none_of(methods.begin(), methods.end(), asks_people))
     throw InputError("--humans: expected a method that asks people, such as human or lga_hill; this run has none");
 
-  std::vector<Competitor> references;
-  if (variation.references)
-    for (const ReferenceRow& row : reference_rows())
-      if (row.in_every_suite || contains(suite.references, row.id))
-        references.push_back({"reference", row.id, row.id, "1", Json::object()});
   std::vector<SelectionErrors> all_errors = design.selection_errors;
   if (all_errors.empty()) all_errors.emplace_back();
   const std::vector<Reading> readings = readings_of(suite, design, catalogue);
+  const std::vector<Row> rows = method_rows(suite, methods, all_errors, readings);
+  const std::vector<Row> references = variation.references ? rows_of_references(suite) : std::vector<Row>();
   std::vector<Cell> cells;
   for (const std::string& id : suite_scenario_ids(suite, design)) {
-    Scenario scenario = suite_scenario(suite, id, variation.truth, &design);
-    if (variation.played) {
-      const std::string control = scenario.tests.front().id;
-      for (const Arm& arm : scenario.tests)
-        if (arm.id == control || plays(*variation.played, arm)) scenario.json["played"].push_back(arm.id);
-    }
+    const Scenario scenario = played_scenario(suite, id, design, variation);
     expect_own_scenes(suite, design, scenario);
     expect_layouts(scenario, design.layouts);
     expect_errors_possible(suite, scenario, all_errors);
     expect_read(suite, scenario, readings);
     for (const std::string& engine : design.engines) expect_dynamics(scenario, catalogue.find("engine", engine));
-    Cell cell = unplayed_cell(suite, design, scenario, variation.answers);
-    const auto as_simulated = cell.data;
-    const auto add = [&](const Competitor& method, int demonstrations, std::uint64_t seed,
-                         const SelectionErrors& errors = {}, const Reading& reading = {}) {
-      cell.method = method;
-      cell.method.name += errors.suffix() + reading.suffix();
-      cell.selection_errors = errors;
-      cell.reading = reading;
-      cell.data = reading.none() ? as_simulated : data_hashes(scenario, cell.answers, reading);
-      cell.train_on = method.is_reference() ? std::nullopt : design.train_on;
-      cell.demonstrations = demonstrations;
-      cell.training_seed = seed;
-      for (const auto& participant : participants(method, scenario, variation.participants)) {
-        cell.participant = participant;
-        cells.push_back(cell);
-      }
-    };
-    for (const std::string& layout : design.layouts) {
+    const std::vector<Row> answered = rows_in(scenario, rows, variation.participants);
+    Place place{scenario, unplayed_cell(suite, design, scenario, variation.answers)};
+    place.cell.train_on = design.train_on;
+    for (const std::string& layout : design.layouts)
       for (const std::string& engine : design.engines) {
-        cell.layout = layout;
-        cell.engine = engine;
-        for (const int n : design.demonstrations)
-          for (const std::uint64_t seed : design.seeds) {
-            for (const Competitor& method : methods)
-              for (const SelectionErrors& errors : all_errors)
-                if (errors.none() || !contains(suite.selects_nothing, method.id))
-                  for (const Reading& reading : readings) add(method, n, seed, errors, reading);
-            for (const Competitor& row : references)
-              if (learns(row) && n > 0) add(row, n, seed);
-          }
-        for (const Competitor& row : references)
-          if (!learns(row))
-            for (const std::uint64_t seed : scene_sets(design.test_scenes, design.seeds)) add(row, 0, seed);
+        place.cell.layout = layout;
+        place.cell.engine = engine;
+        std::vector<Cell> there = cells_at(place, answered, references, design);
+        std::move(there.begin(), there.end(), std::back_inserter(cells));
       }
-    }
   }
   expect_each_method(methods, cells);
   return cells;

@@ -17,7 +17,7 @@
 #include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/suite.hpp>
-#include <lgabench/harness/expand.hpp>
+#include <lgabench/harness/suite_scenario.hpp>
 #include <lgabench/record/answer_source.hpp>
 
 namespace lgabench::cli {

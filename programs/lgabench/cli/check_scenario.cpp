@@ -20,7 +20,7 @@
 #include <lgabench/harness/counted_progress.hpp>
 #include <lgabench/harness/missing_encoder.hpp>
 #include <lgabench/harness/suite.hpp>
-#include <lgabench/harness/expand.hpp>
+#include <lgabench/harness/suite_scenario.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench::cli {

@@ -17,7 +17,7 @@
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/suite.hpp>
-#include <lgabench/harness/expand.hpp>
+#include <lgabench/harness/suite_scenario.hpp>
 #include <lgabench/host/python_method.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/record/answer_source.hpp>

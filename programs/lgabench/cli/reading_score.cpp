@@ -18,7 +18,7 @@
 #include <lgabench/core/suggest.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/counted_progress.hpp>
-#include <lgabench/harness/expand.hpp>
+#include <lgabench/harness/suite_scenario.hpp>
 
 namespace lgabench::cli {
 namespace {

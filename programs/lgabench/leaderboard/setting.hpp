@@ -7,6 +7,7 @@
 
 #include <lgabench/core/json.hpp>
 #include <lgabench/harness/expand.hpp>
+#include <lgabench/harness/suite_scenario.hpp>
 #include <lgabench/leaderboard/conditions.hpp>
 
 namespace lgabench::leaderboard {
