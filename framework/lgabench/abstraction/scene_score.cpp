@@ -29,9 +29,11 @@ bool has_exact_sets(const Scenario& scenario, const Meaning& selected, const Mea
   return true;
 }
 
-void add_scene(const Scene& scene, const Observation& seen, const Meaning& selected, SceneScore& score) {
-  const std::vector<std::uint8_t> kept = grounded(selected, seen);
-  bool exact = true;
+}  // namespace
+
+void add_scene(const Scene& scene, const Observation& seen, const std::vector<std::uint8_t>& kept, bool astray,
+               SceneScore& score) {
+  bool exact = !astray;
   for (const SceneObject& object : scene.objects) {
     const auto instance = std::find_if(seen.instances.begin(), seen.instances.end(),
                                        [&](const Instance& one) { return one.id == object.instance_id; });
@@ -48,8 +50,6 @@ void add_scene(const Scene& scene, const Observation& seen, const Meaning& selec
   ++score.scenes;
   score.exact_scenes += exact;
 }
-
-}  // namespace
 
 SceneScore& operator+=(SceneScore& all, const SceneScore& more) {
   for (const auto member : {&SceneScore::commands, &SceneScore::exact_sets, &SceneScore::scenes,
@@ -75,8 +75,9 @@ SceneScore score(const Scenario& scenario, int command, const Selection& selecti
     for (int i = 0; i < scenes; ++i) {
       const int index = static_cast<int>(turn - commands.begin()) + i * static_cast<int>(commands.size());
       const Scene scene = test_scene(scenario, layout, arm.id, scene_seed, index);
-      const Observation seen = environment.draw(scene, view_of(scenario, scene));
-      add_scene(scene, perceived ? perceived(seen, scene) : seen, selection.target, score);
+      const Observation drawn = environment.draw(scene, view_of(scenario, scene)),
+                        seen = perceived ? perceived(drawn, scene) : drawn;
+      add_scene(scene, seen, grounded(selection.target, seen), false, score);
     }
   }
   return score;

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include <lgabench/core/language_model.hpp>
+#include <lgabench/core/observation.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/core/scene.hpp>
 
 namespace lgabench {
 
@@ -19,8 +21,13 @@ struct SceneScore {
 };
 SceneScore& operator+=(SceneScore& all, const SceneScore& more);
 
+/// Adds a scene: `kept` are ids of objects that were kept, `astray` says that something else was kept too. What is
+/// meant is what the scene's sampler made a target and is in view.
+void add_scene(const Scene& scene, const Observation& seen, const std::vector<std::uint8_t>& kept, bool astray,
+               SceneScore& score);
+
 /// The command's Selection in `scenes` test scenes of each arm of the scenario that gives it, as a policy would see
-/// them. What is meant is what the scene's sampler made a target; a second set is not scored.
+/// them. A second set is not scored.
 /// @throws as test_scene().
 SceneScore score(const Scenario& scenario, int command, const Selection& selection, const std::string& layout,
                  std::uint64_t scene_seed, int scenes);

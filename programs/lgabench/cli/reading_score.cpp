@@ -10,8 +10,10 @@
 
 #include <lgabench/abstraction/goal_mask.hpp>
 #include <lgabench/abstraction/reading.hpp>
+#include <lgabench/abstraction/scene_score.hpp>
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/picture.hpp>
+#include <lgabench/cli/open_questions.hpp>
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/rounding.hpp>
@@ -24,7 +26,8 @@ namespace lgabench::cli {
 namespace {
 
 struct Score {
-  int scenes = 0, exact = 0, objects = 0, segments = 0, types = 0, textures = 0, unanswered = 0;
+  SceneScore kept{};
+  int objects = 0, segments = 0, types = 0, textures = 0, unanswered = 0;
   SelectionCost cost{};
   std::string model{};  // who looked
 };
@@ -54,9 +57,8 @@ std::array<Match, 256> matches(const Observation& seen, const Observation& read)
   return all;
 }
 
-// `kept`: segments.
-void add_scene(const Scene& scene, const Observation& seen, const Observation& read,
-               const std::vector<std::uint8_t>& kept_segments, Score& score, Confusions& confusions) {
+void add_reading(const Scene& scene, const Observation& seen, const Observation& read,
+                 const std::vector<std::uint8_t>& kept_segments, Score& score, Confusions& confusions) {
   constexpr double good = .8, same = .5;
   const std::array<Match, 256> shows = matches(seen, read);
   for (const Instance& object : seen.instances) {
@@ -73,15 +75,18 @@ void add_scene(const Scene& scene, const Observation& seen, const Observation& r
       if (one.texture != object.texture) ++confusions[{object.texture, one.texture}];
     }
   }
-  std::vector<std::uint8_t> kept, meant;  // objects; 0 for a segment that shows none
-  for (const std::uint8_t id : kept_segments) kept.push_back(shows[id].overlap < same ? 0 : shows[id].object);
-  for (const SceneObject& object : scene.objects)
-    for (const Instance& one : seen.instances)
-      if (one.id == object.instance_id && one.pixels > 0 && object.role == role::target) meant.push_back(one.id);
-  std::sort(kept.begin(), kept.end());
-  std::sort(meant.begin(), meant.end());
-  ++score.scenes;
-  score.exact += kept == meant;
+  std::vector<std::uint8_t> kept;  // objects
+  bool astray = false;             // a segment that shows none of the scene's, or one that another segment shows
+  for (const std::uint8_t segment : kept_segments) {
+    const Match& match = shows[segment];
+    const bool is_object = std::any_of(scene.objects.begin(), scene.objects.end(),
+                                       [&](const SceneObject& one) { return one.instance_id == match.object; });
+    if (match.overlap < same || !is_object || contains(kept, match.object))
+      astray = true;
+    else
+      kept.push_back(match.object);
+  }
+  add_scene(scene, seen, kept, astray, score.kept);
 }
 
 std::string share_of(int part, int of) { return of == 0 ? "-" : fixed(static_cast<double>(part) / of, 3); }
@@ -114,9 +119,9 @@ std::vector<Instance> unnamed(const Observation& seen) {
 // The segments that the model takes the command to mean. Nothing where it has no answer, which is told; what asking
 // cost counts in both cases.
 std::optional<std::vector<std::uint8_t>> looked_at(ChatLanguageModel& model, const Command& command,
-                                                   const Observation& read, Score& score,
-                                                   std::vector<std::string>& unanswered) {
-  std::vector<std::uint8_t> ids, kept;
+                                                   const Observation& read, Score& score, OpenQuestions& open,
+                                                   const std::string& where) {
+  std::vector<std::uint8_t> ids;
   for (const Instance& one : read.instances) ids.push_back(one.id);
   const Observation large = marked(read, ids);
   Picture picture(large.size.columns, large.size.rows);
@@ -125,28 +130,29 @@ std::optional<std::vector<std::uint8_t>> looked_at(ChatLanguageModel& model, con
                                    static_cast<std::size_t>(column));
   });
   const SelectionCost before = model.cost();
-  std::string why;
-  try {
-    for (const int mark : model.look(command, picture.png(), static_cast<int>(ids.size())))
-      kept.push_back(ids[static_cast<std::size_t>(mark) - 1]);
-  } catch (const Unread& e) {
-    why = e.what();
-  } catch (const Unanswered& e) {
-    why = e.questions.front();  // a picture is one question
-  }
+  const auto kept = open.answered(
+      [&] {
+        std::vector<std::uint8_t> segments;
+        for (const int mark : model.look(command, picture.png(), static_cast<int>(ids.size())))
+          segments.push_back(ids[static_cast<std::size_t>(mark) - 1]);
+        return segments;
+      },
+      where);
   score.cost += model.cost() - before;
   score.model = model.model();
-  if (why.empty()) return kept;
-  ++score.unanswered;
-  unanswered.push_back(why);
-  return std::nullopt;
+  score.unanswered += !kept;
+  return kept;
 }
 
 void print_row(const Reading& reading, const std::string& arm, const Score& score, bool json) {
   const bool by_model = reading.names == looked;
   if (json) {
-    Json row{{"names", reading.names},          {"segments", reading.segments}, {"arm", arm},
-             {"scenes", score.scenes},          {"exact_scenes", score.exact},  {"objects", score.objects},
+    Json row{{"names", reading.names},
+             {"segments", reading.segments},
+             {"arm", arm},
+             {"scenes", score.kept.scenes},
+             {"exact_scenes", score.kept.exact_scenes},
+             {"objects", score.objects},
              {"segments_right", score.segments}};
     if (by_model)
       row.update({{"model", score.model},
@@ -160,13 +166,13 @@ void print_row(const Reading& reading, const std::string& arm, const Score& scor
   }
   const auto named = [&](int right) { return by_model ? "-" : share_of(right, score.objects); };
   to_stdout("{:<14} {:<10} {:<20} {:>6}  {:>7}  {:>8}  {:>7}  {:>8}", reading.names, reading.segments, arm,
-            share_of(score.exact, score.scenes), score.objects, share_of(score.segments, score.objects),
-            named(score.types), named(score.textures));
+            share_of(score.kept.exact_scenes, score.kept.scenes), score.objects,
+            share_of(score.segments, score.objects), named(score.types), named(score.textures));
   if (by_model)
     to_stdout("  {} questions, {} tokens, {:.1f} s, {}", score.cost.lm_queries, score.cost.lm_tokens,
               score.cost.lm_seconds, score.model);
   if (score.unanswered > 0)
-    to_stdout("; {} of {} scenes have no answer", score.unanswered, score.unanswered + score.scenes);
+    to_stdout("; {} of {} scenes have no answer", score.unanswered, score.unanswered + score.kept.scenes);
   to_stdout("\n");
 }
 
@@ -206,7 +212,7 @@ void print_reading_scores(const Suite& suite, Truth truth, const ReadingArgument
         "{:>7}  {:>8}\n",
         a.scenes, "names", "segments", "arm", "exact", "objects", "segments", "types", "textures");
   const std::vector<std::string> simulator{Reading::simulator};
-  std::vector<std::string> unanswered;
+  OpenQuestions open;
   const std::vector<std::string>&names = a.names.empty() ? simulator : a.names,
         &segments = a.segments.empty() ? simulator : a.segments;
   CountedProgress progress("scenes scored:",
@@ -235,13 +241,11 @@ void print_reading_scores(const Suite& suite, Truth truth, const ReadingArgument
             const Observation shown = perceived ? perceived(seen, scene) : seen;
             Observation there = read ? read(shown, scene) : shown;
             if (by_model) there.instances = unnamed(there);
-            std::vector<std::string> why;
             const auto kept =
-                by_model ? looked_at(*model, scenario.command(scene.command), there, row->second, why)
+                by_model ? looked_at(*model, scenario.command(scene.command), there, row->second, open,
+                                     fmt::format("{}, {}, scene {}: ", id, arm.id, i))
                          : grounded(scenario.commands[static_cast<std::size_t>(scene.command)].truth.target, there);
-            if (kept) add_scene(scene, seen, there, *kept, row->second, confusions);
-            for (const std::string& one : why)
-              unanswered.push_back(fmt::format("{}, {}, scene {}: {}", id, arm.id, i, one));
+            if (kept) add_reading(scene, seen, there, *kept, row->second, confusions);
             progress.tell_next();
           }
         }
@@ -249,9 +253,7 @@ void print_reading_scores(const Suite& suite, Truth truth, const ReadingArgument
       for (const auto& [arm, score] : arms) print_row(reading, arm, score, a.json);
       if (!a.json) print_confusions(confusions, reading);
     }
-  if (unanswered.empty()) return;
-  for (const std::string& question : unanswered) to_stderr("no answer: {}\n", one_line(question));
-  throw MethodError(fmt::format("{} scenes have no answer and are in no mean", unanswered.size()));
+  open.expect_none("scenes have no answer and are in no mean");
 }
 
 }  // namespace lgabench::cli

@@ -17,6 +17,7 @@
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/abstraction/selection_text.hpp>
 #include <lgabench/cli/commands.hpp>
+#include <lgabench/cli/open_questions.hpp>
 #include <lgabench/cli/reading_score.hpp>
 #include <lgabench/cli/select_score.hpp>
 #include <lgabench/core/contains.hpp>
@@ -337,21 +338,19 @@ void add_select(CLI::App& app, int&) {
     const std::vector<Asked> commands = find_commands(*arguments);
     if (answerer.client) say_what_is_open(answerer, commands, arguments->concurrency);
     bool first = true;
-    std::vector<std::string> unanswered;
+    OpenQuestions open;
     for (const Asked& asked : commands) {
       if (!first && !arguments->json) to_stdout("\n");
       first = false;
       try {
         select(asked, answerer.model.get(), *arguments);
       } catch (const Unanswered& e) {
-        unanswered.insert(unanswered.end(), e.questions.begin(), e.questions.end());
+        open.add(e);
       }
     }
-    if (unanswered.empty()) return;
-    for (const std::string& question : unanswered) to_stderr("no answer: {}\n", one_line(question));
-    throw MethodError(
-        fmt::format("{} questions have no answer; all others are answered in {}, and the same command asks these again",
-                    unanswered.size(), arguments->cassette));
+    open.expect_none(
+        fmt::format("questions have no answer; all others are answered in {}, and the same command asks these again",
+                    arguments->cassette));
   });
 }
 

@@ -12,6 +12,7 @@
 #include <lgabench/abstraction/chat_model.hpp>
 #include <lgabench/abstraction/scene_score.hpp>
 #include <lgabench/abstraction/select_features.hpp>
+#include <lgabench/cli/open_questions.hpp>
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
@@ -54,21 +55,8 @@ struct ScoredCommand {
 struct Scores {
   std::vector<ScoredCommand> commands;
   std::vector<std::string> sources;
-  std::vector<std::string> unanswered;  // a line for each question
+  OpenQuestions open;
 };
-
-// What `ask` returns, or nothing where an answer lacks, which is told.
-template <class Ask>
-auto answered(std::vector<std::string>& unanswered, Ask&& ask) -> std::optional<decltype(ask())> {
-  try {
-    return ask();
-  } catch (const Unanswered& e) {
-    unanswered.insert(unanswered.end(), e.questions.begin(), e.questions.end());
-  } catch (const Unread& e) {
-    unanswered.emplace_back(e.what());
-  }
-  return std::nullopt;
-}
 
 std::string title_of(const Scenario& scenario, const ScenarioCommand& command, const std::string& arm) {
   if (!arm.empty()) return scenario.id + ", " + arm;
@@ -106,8 +94,8 @@ Scores scores_of(const std::string& asking, const Suite& suite, Truth truth, int
         ScoredCommand& scored = all.commands.emplace_back(
             ScoredCommand{id, arm, title_of(scenario, command, arm), command.ambiguous, {"", asking, {}}});
         progress.tell_next();
-        const auto selection = answered(
-            all.unanswered, [&] { return select_as_asked(asking, scenario.command(i), scenario.space, model); });
+        const auto selection =
+            all.open.answered([&] { return select_as_asked(asking, scenario.command(i), scenario.space, model); });
         if (!selection) {
           scored.row.unanswered = 1;
           continue;
@@ -134,7 +122,7 @@ struct Covered {
 
 // Those on which there are no hypotheses are left out.
 std::vector<Covered> coverage_of(const Suite& suite, Truth truth, const WithAnswers& with_answers,
-                                 std::vector<std::string>& unanswered) {
+                                 OpenQuestions& open) {
   std::vector<Covered> all;
   for (const std::string& id : suite_scenario_ids(suite, suite.design)) {
     const Scenario scenario = suite_scenario(suite, id, truth);
@@ -143,7 +131,7 @@ std::vector<Covered> coverage_of(const Suite& suite, Truth truth, const WithAnsw
     with_answers(scenario, [&](LanguageModel& model) {
       for (int i = 0; i < (of_persons ? static_cast<int>(scenario.commands.size()) : 1); ++i) {
         const Command command = scenario.command(i);
-        const auto hypotheses = answered(unanswered, [&] { return model.hypotheses(command, scenario.space); });
+        const auto hypotheses = open.answered([&] { return model.hypotheses(command, scenario.space); });
         if (hypotheses && hypotheses->empty()) continue;
         Covered& one = all.emplace_back(Covered{id, of_persons ? command.utterance : id, {}});
         if (hypotheses) one.holds_truth = covers_truth(*hypotheses, scenario, i);
@@ -237,8 +225,9 @@ void print_misread(const Scores& scores) {
 struct SuiteScores {
   std::map<std::string, Scores> by_asking;  // of the ways in which somebody can answer
   std::vector<Covered> covered;
-  std::vector<std::string> left_out, unanswered;  // lines
-  bool hopeless = false;                          // what was left out has answers that cannot be read
+  std::vector<std::string> left_out;  // lines
+  OpenQuestions open;
+  bool hopeless = false;  // what was left out has answers that cannot be read
 };
 
 SuiteScores ask_all(const Suite& suite, Truth truth, int scenes, const WithAnswers& with_answers) {
@@ -257,11 +246,11 @@ SuiteScores ask_all(const Suite& suite, Truth truth, int scenes, const WithAnswe
   for (const char* asking : ways_of_asking)
     unless_impossible(asking, [&] {
       const Scores scores = scores_of(asking, suite, truth, scenes, with_answers, progress);
-      all.unanswered.insert(all.unanswered.end(), scores.unanswered.begin(), scores.unanswered.end());
+      all.open.add(scores.open);
       all.by_asking[asking] = scores;
     });
   progress.end();
-  unless_impossible("hypotheses", [&] { all.covered = coverage_of(suite, truth, with_answers, all.unanswered); });
+  unless_impossible("hypotheses", [&] { all.covered = coverage_of(suite, truth, with_answers, all.open); });
   return all;
 }
 
@@ -343,10 +332,7 @@ void print_scores(const Suite& suite, Truth truth, int scenes, bool json, bool e
     const auto scores = asked.by_asking.find(asking);
     if (!json && scores != asked.by_asking.end() && std::string(asking) != "named") print_misread(scores->second);
   }
-  for (const std::string& question : asked.unanswered) to_stderr("no answer: {}\n", one_line(question));
-  if (!asked.unanswered.empty())
-    throw MethodError(
-        fmt::format("{} questions have no answer; their commands are in no mean", asked.unanswered.size()));
+  asked.open.expect_none("questions have no answer; their commands are in no mean");
   if (asked.hopeless) throw MethodError("the model gives no answers that can be read in a form that was left out");
   if (expects_answers && sources.empty()) throw InputError("no answer was scored: " + asked.left_out.front());
 }
