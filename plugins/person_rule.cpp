@@ -202,8 +202,7 @@ class PersonRuleMethod final : public CloningMethod {
         for (std::size_t i = 0; i < open.size(); ++i) {
           const double told =
               belief.expected_bits(scenes[open[i].scene], open[i].one, errs) / (open[i].one ? 1 : price_of_which);
-          if (told > most + 1e-9) most = told;
-          best = i;
+          if (told > most + 1e-9) most = told, best = i;
         }
       }
       const Asked asked = open[best];

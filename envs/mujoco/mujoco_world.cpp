@@ -123,8 +123,7 @@ std::optional<BodyPhysics> MujocoWorld::physics(int body) const {
   refresh();
   const mjModel* m = model_;
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  mjtNum low[3] = {infinity, infinity, infinity};
-  high[3] = {-infinity, -infinity, -infinity};
+  mjtNum low[3] = {infinity, infinity, infinity}, high[3] = {-infinity, -infinity, -infinity};
   for (int g = b.first_geom; g < b.first_geom + b.geoms; ++g) {
     const int mesh = m->geom_dataid[g];
     for (int v = m->mesh_vertadr[mesh]; v < m->mesh_vertadr[mesh] + m->mesh_vertnum[mesh]; ++v) {

@@ -142,8 +142,7 @@ std::vector<float> shape_features(const Picture& picture, std::uint8_t id) {
       in_holes += of;
       continue;
     }
-    if (of > most) most = of;
-    largest = i;
+    if (of > most) most = of, largest = i;
   }
   const std::vector<cv::Point>& outline = outlines[largest];
   std::vector<cv::Point> hull;
