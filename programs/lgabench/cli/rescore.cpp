@@ -32,13 +32,12 @@ bool is_within(const ActionDistance& distance, const PoseTolerance& tolerance) {
          distance.turn_rad <= tolerance.turn_deg * pi / 180;
 }
 
-// The environment's task. @throws InputError where the environment does not compare actions by pose (mobile)
-const TaskInfo& task_judged_by_pose(const std::string& environment, const std::string& task) {
-  const EnvironmentType& type = find_environment(environment);
+// The environment's task. @throws InputError where the environment does not compare actions by pose
+const TaskInfo& task_judged_by_pose(const EnvironmentType& type, const std::string& task) {
   const TaskInfo& of = find_task(type, task);
   const Action any(type.action_space().size(), 1);
   if (!type.distance(of, any, any))
-    throw InputError(fmt::format("--judge pose: {} does not compare actions by pose", environment));
+    throw InputError(fmt::format("--judge pose: {} does not compare actions by pose", type.id()));
   return of;
 }
 
@@ -78,7 +77,7 @@ Rescored by_physics(Environment& environment, const Scene& scene, const Episode&
 Rescored by_pose(Environment& environment, const Scene& scene, const Scenario& scenario, const Episode& episode,
                  const PoseTolerance& within) {
   const EnvironmentType& type = *scenario.environment;
-  const TaskInfo& task = task_judged_by_pose(type.id(), scenario.task);
+  const TaskInfo& task = task_judged_by_pose(type, scenario.task);
   environment.reset(scene);
   bool near = false;
   std::optional<double> distance_m;
@@ -200,7 +199,7 @@ int rescore(const RescoreArguments& a) {
     progress.tell_next();
     if (cell.failed) continue;
     const PlayedScenes::Played& played = scenes.cell((a.run / "cells" / cell.key / cell_file::configuration).string());
-    if (a.judge == "pose") task_judged_by_pose(played.scenario.environment->id(), played.scenario.task);
+    if (a.judge == "pose") task_judged_by_pose(*played.scenario.environment, played.scenario.task);
     for (const std::string& arm : cell.arms) {
       const auto is_row = [&](const ByRow& one) {
         return one.row == cell.method && one.arm == arm && one.demonstrations == cell.demonstrations;
