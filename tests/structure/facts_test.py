@@ -43,7 +43,7 @@ def facts():
         found += [("arm", f"{suite['id']} {arm}", f"{suite['id']} {arm}", "suites") for arm in suite["about"]["arms"]]
     axes = (DOCS / "protocol.md").read_text().split("<!-- program:axes -->")[1].split("<!-- /program -->")[0]  # likewise
     found += [("axis", name, f"perturbation {name}", "protocol") for name in re.findall(r"^\| `(\w+)` \|", axes, re.M)]
-    marks = (SOURCE / "framework/lgabench/statistics/tables.hpp").read_text().split("table_marks{")[1].split("};")[0]
+    marks = "".join((SOURCE / "framework/lgabench" / file).read_text() for file in ("record/reference_rows.cpp", "statistics/tables.cpp"))
     found += [("mark", f"{sign} {word}", f"{sign} {word}" if sign in "!?" else sign, "reading-a-report") for word, sign in re.findall(r'\{"(\w+)", "(.)"', marks)]
     for page in MEMBERS:  # docs_test.py compares them with the schemas
         for title, text in sections(page)[1:]:
