@@ -423,7 +423,7 @@ class Completion(Case):
         self.assertIn("mujoco" if (BUILD / "lib/lgabench/plugins/mujoco.so").exists() else "kinematic",
                       self.completed("demos", "heart", "--engine", ""))
         self.assertEqual(self.completed("info", "human"), ["human"])
-        self.assertEqual(self.completed("help", "a"), ["answers", "all", "attribute"])
+        self.assertEqual(self.completed("help", "a"), ["all", "answers", "attribute"])
         (self.dir / "runs").mkdir()
         self.assertEqual(self.completed("report", "ru"), ["runs"])
         for verb in VERBS:
