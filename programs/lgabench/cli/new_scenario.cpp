@@ -22,6 +22,17 @@ struct NewScenarioArguments : NewScenario {
   fs::path directory = ".";
 };
 
+// The flags are members of that environment's scenarios which has the default task.
+CLI::Validator task_with_these_flags() {
+  return CLI::Validator(
+      [](std::string& word) {
+        Words ids;
+        for (const TaskInfo& task : environment_with_task(NewScenario().task).tasks()) ids.push_back(task.id);
+        return one_of("task", ids)(word);
+      },
+      "", "");
+}
+
 // The words that a person types for what no flag gave, with commas between them where there may be several.
 void ask(const char* verb, Words& words, const char* flag, const char* question, bool several) {
   if (!words.empty()) return;
@@ -168,7 +179,7 @@ void add_scenario_options(Verb& verb, NewScenario& a) {
               "usual one of the task's environment)",
               feature_space());
   verb.below("The task and its scenes");
-  verb.option("--task TASK", a.task, "What to do with the object", installed_task(), with_default);
+  verb.option("--task TASK", a.task, "What to do with the object", task_with_these_flags(), with_default);
   verb.option("--angle DEGREES", a.angle_deg, "rotate: by how much, in degrees");
   verb.option("--clockwise", a.clockwise, "rotate: clockwise, seen from above");
   verb.option("--distractors N:M", a.distractors, "Number of other objects in a test scene", with_default);
