@@ -411,7 +411,7 @@ NB_MODULE(_core, m) {
   nb::class_<Scenario>(m, "Scenario")
       .def_ro("id", &Scenario::id)
       .def_ro("task", &Scenario::task)
-      .def_ro("environment", &Scenario::environment)
+      .def_prop_ro("environment", [](const Scenario& s) { return s.environment->id(); })
       .def_prop_ro("commands", &Scenario::utterances)
       .def_prop_ro("layouts", [](const Scenario& s) { return layouts_of(s); })
       .def_prop_ro("arms",
