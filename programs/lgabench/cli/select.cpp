@@ -264,7 +264,7 @@ void add_select(CLI::App& app, int&) {
               "Which true distribution to compare with where released and printed ones differ",
               one_of("truth", {"released", "printed"}), with_default);
   verb.option(fmt::format("--task {}", fmt::join(installed_task_ids(), "|")), arguments->task,
-              "The task, for a command in quotes", installed_task(), with_default);
+              "The task, for a command in quotes", one_of("task", installed_task_ids()), with_default);
   verb.option("--space SPACE", arguments->space,
               "The feature space, for a command in quotes (default: the usual one of the task's environment)",
               feature_space());

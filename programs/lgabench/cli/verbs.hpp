@@ -102,8 +102,7 @@ inline CLI::Validator one_of(std::string what, std::vector<std::string> known) {
       "", "");
 }
 
-/// Checks for an option: the word of an installed task; of an installed feature space.
-CLI::Validator installed_task();
+/// A check for an option: an installed feature space.
 CLI::Validator feature_space();
 
 /// What --plugin-path of a verb takes that finds its plugins with plugins_at() (host/python_method.hpp).
