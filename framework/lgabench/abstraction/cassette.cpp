@@ -63,10 +63,10 @@ bool Cassette::read() {
     const std::string place = fmt::format("{}: line {}", file_.string(), ++lines_);
     const Json json = parse_json(std::string_view(text).substr(size_, end - size_), place);
     const JsonReader reader(json, place);
-    const auto [key, model, request, reply] = value_of<CassetteLine>(reader);
+    auto [key, model, request, reply] = value_of<CassetteLine>(reader);
     auto& served = served_[to_text(AskedModel::of(model, reader.at("request")))];
     if (!reply.served.empty()) served.insert(reply.served);
-    replies_[key] = reply;
+    replies_[key] = std::move(reply);
   }
   return size_ == text.size();
 }
