@@ -7,9 +7,6 @@
 
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/verbs.hpp>
-#include <lgabench/core/colour.hpp>
-#include <lgabench/core/error.hpp>
-#include <lgabench/core/json.hpp>
 #include <lgabench/core/suggest.hpp>
 #include <lgabench/core/terminal.hpp>
 
