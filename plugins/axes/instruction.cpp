@@ -54,6 +54,7 @@ PerturbationAxis instruction() {
                         {EpisodePart::words},
                         {EpisodePart::answers, EpisodePart::selection}};
   axis.named = true;
+  axis.of_all = false;
   axis.other = other_command;
   axis.words = [](int level) -> std::vector<std::string> {
     if (level == 1) return {""};

@@ -102,4 +102,11 @@ View view_of(const Scenario& scenario, const Scene& scene, std::optional<std::ui
   return view;
 }
 
+TestScene in_its_arm(const Scenario& scenario, Scene scene, std::optional<std::uint64_t> training_seed) {
+  TestScene test{std::move(scene)};
+  test.perception = perception_of(scenario, scenario.arm(test.scene.arm), training_seed);
+  test.view = view_of(scenario, test.scene, training_seed);
+  return test;
+}
+
 }  // namespace lgabench

@@ -48,7 +48,11 @@ struct TestScene {
 Perception perception_of(const Scenario& scenario, const Arm& arm,
                          std::optional<std::uint64_t> training_seed = std::nullopt);
 
-/// How the scene's arm is looked at: the usual view, but for a perturbation. `training_seed`: likewise.
+/// How the scene's arm is looked at: the usual view, but for a perturbation. `training_seed`: as in SceneRequest.
 View view_of(const Scenario& scenario, const Scene& scene, std::optional<std::uint64_t> training_seed = std::nullopt);
+
+/// The test scene with its arm's perception and view. `training_seed`: as in SceneRequest. @pre the scenario outlives
+/// it.
+TestScene in_its_arm(const Scenario& scenario, Scene scene, std::optional<std::uint64_t> training_seed);
 
 }  // namespace lgabench

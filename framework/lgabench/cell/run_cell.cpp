@@ -147,13 +147,11 @@ DemonstratedScenes shown_to(const Cell& cell, const Scenario& scenario) {
 std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell, bool empty, const Selected& selected) {
   std::vector<TestScene> scenes;
   for (const std::string& id : played_arms(scenario.json)) {
-    const Arm& arm = scenario.arm(id);
-    const Perception perception = perception_of(scenario, arm, cell.scenes_of_seed());
     for (int i = 0; i < cell.episodes; ++i) {
-      Scene scene = test_scene(scenario, cell.layout, arm.id, cell.scene_seed, i, cell.scenes_of_seed());
-      const bool keeps_nothing = empty || selected.nothing_for(command_given(scene, scenario, cell.scenes_of_seed()));
-      const View view = view_of(scenario, scene, cell.scenes_of_seed());
-      scenes.push_back({std::move(scene), perception, keeps_nothing, view});
+      const auto seed = cell.scenes_of_seed();
+      TestScene test = in_its_arm(scenario, test_scene(scenario, cell.layout, id, cell.scene_seed, i, seed), seed);
+      test.abstraction_empty = empty || selected.nothing_for(command_given(test.scene, scenario, seed));
+      scenes.push_back(std::move(test));
     }
   }
   return scenes;

@@ -144,7 +144,7 @@ std::vector<std::string> perturbation_ids(const PluginAxes& more) {
 std::vector<const PerturbationAxis*> axes_named(const std::string& id, const PluginAxes& more) {
   std::vector<const PerturbationAxis*> axes;
   for (const PerturbationAxis& axis : perturbation_axes())
-    if (id == axis.id || (id == all_axes && !axis.other)) axes.push_back(&axis);
+    if (id == axis.id || (id == all_axes && axis.of_all)) axes.push_back(&axis);
   if (const PerturbationAxis* added = find_axis(more, id); axes.empty() && added) axes.push_back(added);
   if (axes.empty()) throw InputError(none_named("axis", id, perturbation_ids(more)));
   return axes;

@@ -60,6 +60,7 @@ struct PerturbationAxis {
   /// Why scenes of the scenario cannot have it at that level, in a few words; "" where they can. Null: all can.
   std::function<std::string(const Scenario&, int level)> lacks = nullptr;
   bool named = false;  // its levels are kinds without an order: no curve, no area
+  bool of_all = true;  // `all` applies it. A new axis would change what `all` has always meant
   bool of_plugin = false;
   std::string version = "";  // the plugin's
 

@@ -117,10 +117,10 @@ class Player {
         *scenario_, {layout_, which.split, test ? which.arm : "train", which.seed, {}, which.own_scenes}, which.index);
     Observation seen = environment_->reset(scene);
     if (test) {
-      if (const View view = view_of(*scenario_, scene, which.own_scenes); view != View())
-        seen = environment_->look(view);
-      if (const Perception perception = perception_of(*scenario_, scenario_->arm(which.arm), which.own_scenes))
-        seen = perception(seen, scene);
+      TestScene shown = in_its_arm(*scenario_, std::move(scene), which.own_scenes);
+      if (shown.view != View()) seen = environment_->look(shown.view);
+      if (shown.perception) seen = shown.perception(seen, shown.scene);
+      scene = std::move(shown.scene);
     }
     scene_ = std::move(scene);
     return seen;
