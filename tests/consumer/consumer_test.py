@@ -226,7 +226,7 @@ class Examples(Consumer):
     def test_each(self):
         shutil.copytree(SOURCE / "examples", self.dir / "examples")
         for compiler in COMPILERS:
-            for name in ("select_only", "nearest_neighbour", "noisy_copies") + (("own_network",) if FULL else ()):
+            for name in ("select_only", "nearest_neighbour", "noisy_copies", "tinted_light") + (("own_network",) if FULL else ()):
                 with self.subTest(name, compiler=compiler):
                     build = self.dir / f"build-{compiler}-{name}"
                     self.call("cmake", "-S", self.dir / "examples" / name, "-B", build, "-G", "Ninja",
@@ -249,6 +249,9 @@ class Examples(Consumer):
     def noisy_copies(self, build):
         self.assertEqual(self.check(build / "noisy_copies.so", "--set", "epochs=5")["sweep"], "ok")
         self.runs("noisy_copies", build, "--set", "noisy_copies.epochs=2")
+
+    def tinted_light(self, build):
+        self.assertEqual(set(self.check(build / "tinted_light.so").values()), {"ok"})
 
     def own_network(self, build):
         self.assertEqual(set(self.check(build / "own_network.so", "--set", "epochs=20").values()), {"ok"})

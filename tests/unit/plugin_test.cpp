@@ -1,6 +1,7 @@
 // Plugins that work: what is read of them, loading, options, and the guard around calls.
 #include <cstdlib>
 
+#include <lgabench/core/perturbations.hpp>
 #include <lgabench/plugin/fingerprint.hpp>
 #include <lgabench/plugin/guarded.hpp>
 #include <lgabench/plugin/loader.hpp>
@@ -121,6 +122,24 @@ TEST(Plugin, APerturbationSaysWhatItsAxisIsAndPerceives) {
   EXPECT_GT(brighter.rgb.front(), 100);
   EXPECT_EQ(brighter.rgb, perturbation->perceive(seen, 1, RandomStream("a")).rgb);
   EXPECT_NE(brighter.rgb, perturbation->perceive(seen, 1, RandomStream("b")).rgb);
+}
+
+// examples/tinted_light and the shipped light_colour: an axis that changes perception alone needs nothing of lgabench's
+// own.
+TEST(Plugin, AnExampleMakesTheBytesOfAShippedAxis) {
+  const PluginInfo plugin = read_plugin(fixture("examples/tinted_light"));
+  const auto mine = load_perturbation(plugin);
+  const PerturbationAxis& shipped = *axes_named("light_colour").front();
+  EXPECT_EQ(plugin.axis.at("levels"), Json(shipped.levels));
+  EXPECT_EQ(plugin.axis.at("changes"), Json(part_words(shipped.changes)));
+  Observation seen{{16, 16}, std::vector<std::uint8_t>(3 * 256), std::vector<std::uint8_t>(256, 1), {}};
+  for (std::size_t i = 0; i < seen.rgb.size(); ++i) seen.rgb[i] = static_cast<std::uint8_t>(i / 3);  // each grey
+  for (int level = 1; level <= shipped.most(); ++level)
+    for (const char* scene : {"a", "b", "c", "d", "e"}) {
+      const Observation changed = mine->perceive(seen, level, RandomStream(scene));
+      EXPECT_EQ(changed.rgb, shipped.perceive(seen, Scenario(), level, RandomStream(scene)).rgb);
+      EXPECT_NE(changed.rgb, seen.rgb);
+    }
 }
 
 TEST(Plugin, SameFileLoadsTwice) {
