@@ -48,6 +48,17 @@ class Budget(unittest.TestCase):
                 self.assertGreater(code, 0.9 * BUDGET[room], f"{top}/lgabench/{room}: its budget can fall")
 
 
+class Registered(unittest.TestCase):
+    def test_ctest_knows_every_class_of_the_integration_tests(self):
+        folder = SOURCE / "tests/integration"
+        known = {(file, name) for file, names in re.findall(r"integration_tests\((\S+) ([^)]+)\)", (folder / "CMakeLists.txt").read_text())
+                 for name in names.split()}
+        there = {(file.name, name) for file in folder.glob("*_test.py")
+                 for name, body in re.findall(r"^class (\w+)\(.*?:\n(.*?)(?=^\S|\Z)", file.read_text(), re.S | re.M) if "def test_" in body}
+        self.assertEqual(there - known, set())
+        self.assertGreater(len(there), 50)
+
+
 class FirstRun(unittest.TestCase):
     """./quickstart builds the target first_run, and then runs a preset."""
 
