@@ -19,6 +19,7 @@
 #include <tabletop/two_poses.hpp>
 
 #include "../engine_under_test.hpp"
+#include "altered_environment.hpp"
 #include "testing.hpp"
 
 namespace lgabench {
@@ -53,6 +54,16 @@ std::unique_ptr<Environment> Play::environment;
 
 std::string bytes(const std::vector<Demonstration>& demonstrations) {
   return demonstrations_hdf5(demonstrations, "test");
+}
+
+TEST_F(Play, AnEpisodeThatGoesOnAfterItsOneActionIsTheEnvironmentsFault) {
+  const AlteredType type(*scenario->environment, [](StepResult& result) { result.terminated = false; });
+  Scenario goes_on = *scenario;
+  goes_on.environment = &type;
+  const auto played = make_environment(goes_on, make_engine());
+  const Scene scene = scenes(3).back();
+  EXPECT_SAYS(message_of<EngineError>([&] { evaluate(*played, {{scene}}, reference_actor("oracle"), [](int) {}); }),
+              "environment tabletop: scene 2 of train: the episode goes on after its action, and lgabench plays one");
 }
 
 TEST_F(Play, TenDemonstrationsAreAPrefixOfFifty) {

@@ -13,21 +13,29 @@
 namespace lgabench {
 namespace {
 
-// Refuses what needs a scene while there is none: environments take a reset for granted.
+// Refuses what needs a scene while there is none: environments take a reset for granted. What an environment does
+// against its own interface is its fault.
 class InOrder final : public Environment {
  public:
-  explicit InOrder(std::unique_ptr<Environment> environment) : environment_(std::move(environment)) {}
+  InOrder(std::unique_ptr<Environment> environment, std::string id)
+      : environment_(std::move(environment)), id_(std::move(id)) {}
 
   const ActionSpace& action_space() const override { return environment_->action_space(); }
   Observation reset(const Scene& scene) override {
     has_scene_ = false;
     Observation seen = environment_->reset(scene);
     has_scene_ = true;
+    arm_ = scene.arm;
+    index_ = scene.index;
     return seen;
   }
   Observation look(const View& view) override { return after_reset("look()").look(view); }
   void show_shadows(bool on) override { environment_->show_shadows(on); }
-  StepResult step(const Action& action) override { return after_reset("step()").step(action); }
+  StepResult step(const Action& action) override {
+    StepResult result = after_reset("step()").step(action);
+    if (!result.terminated && !result.truncated) fail("the episode goes on after its action, and lgabench plays one");
+    return result;
+  }
   Rejudged judged_again(const JudgeLimits& limits) const override {
     return after_reset("judged_again()").judged_again(limits);
   }
@@ -44,14 +52,21 @@ class InOrder final : public Environment {
     return *environment_;
   }
 
+  [[noreturn]] void fail(const std::string& what) const {
+    throw EngineError(fmt::format("environment {}: scene {} of {}: {}", id_, index_, arm_, what));
+  }
+
   std::unique_ptr<Environment> environment_;
+  std::string id_, arm_;  // the environment's; the scene's
+  int index_ = 0;
   bool has_scene_ = false;
 };
 
 }  // namespace
 
 std::unique_ptr<Environment> make_environment(const Scenario& scenario, std::unique_ptr<PhysicsWorld> world) {
-  return std::make_unique<InOrder>(scenario.environment->make(std::move(world), scenario));
+  const EnvironmentType& type = *scenario.environment;
+  return std::make_unique<InOrder>(type.make(std::move(world), scenario), type.id());
 }
 
 Scene training_scene(const Scenario& scenario, const std::string& layout, const std::vector<Selection>& selections,

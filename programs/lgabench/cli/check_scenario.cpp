@@ -76,6 +76,7 @@ bool is_hard(const Scenario& scenario, const std::string& arm) {
 }
 
 // Scenes of one arm in one layout: sampled, then played by the oracle, then by whoever takes any object.
+// @throws EngineError where the environment is at fault.
 void judge_arm(const Scenario& scenario, const std::string& layout, const std::string& arm, int count,
                Environment& environment, CheckReport& report) {
   constexpr int crowd = 4;      // more things than these, the goal among them, may find no room
@@ -167,7 +168,12 @@ int check_scenario(const CheckScenarioArguments& a) {
   CountedProgress progress("arms checked:", static_cast<int>(layouts.size() * arms.size()));
   for (const std::string& layout : layouts)
     for (const std::string& arm : arms) {
-      judge_arm(scenario, layout, arm, a.scenes, *environment, report);
+      try {
+        judge_arm(scenario, layout, arm, a.scenes, *environment, report);
+      } catch (const EngineError& e) {
+        report.problem(fmt::format("{}, {}", arm, layout), e.what(),
+                       "environment and engine must keep to their interface");
+      }
       progress.tell_next();
     }
   progress.end();
