@@ -20,19 +20,19 @@ class ClassCopies {
         background_(lgabench::usual_background(shown)),
         moves_(actions_.places.size()) {
     std::vector<std::size_t> near(moves_.size());
-    for (const lgabench::Demonstration& one : shown) {
-      const lgabench::Step& first = one.steps.front();
-      const std::optional<std::uint8_t> id = lgabench::taken(one, actions_);
-      for (const lgabench::Instance& instance : first.observation.instances) {
-        CutOut object = cut_out(first.observation, instance);
-        if (object.pixels.empty() || lgabench::is_place(instance.object_type)) continue;
-        if (instance.id == id) {
-          for (std::size_t i = 0; i < near.size(); ++i) near[i] += is_near(object, first, actions_.places[i]);
-          members_.push_back({object, first.label});
+    for (const lgabench::Demonstration& one : shown)
+      for (const lgabench::Step& step : one.steps) {
+        const std::optional<std::uint8_t> id = lgabench::taken(step, actions_);
+        for (const lgabench::Instance& instance : step.observation.instances) {
+          CutOut object = cut_out(step.observation, instance);
+          if (object.pixels.empty() || lgabench::is_place(instance.object_type)) continue;
+          if (instance.id == id) {
+            for (std::size_t i = 0; i < near.size(); ++i) near[i] += is_near(object, step, actions_.places[i]);
+            members_.push_back({object, step.label});
+          }
+          looks_.push_back(std::move(object));
         }
-        looks_.push_back(std::move(object));
       }
-    }
     for (std::size_t i = 0; i < near.size(); ++i) moves_[i] = i == 0 || 2 * near[i] > members_.size();
   }
 

@@ -95,9 +95,15 @@ class OfColours : public CloningMethod {
     std::map<std::string, std::vector<Colours>> colours;
     std::vector<Demonstration> shown = demonstrations;
     for (Demonstration& one : shown) {
-      const std::optional<std::uint8_t> id = taken(one, services.actions);
-      if (id) colours[one.instruction.utterance].push_back(colours_of(one.steps.front().observation, *id));
-      for (Step& step : one.steps) names.give(step.observation, one.instruction.selection, id);
+      std::optional<std::uint8_t> id;
+      const auto give = [&](Step& step) { names.give(step.observation, one.instruction.selection, id); };
+      for (Step& step : one.steps) {
+        id = taken(step, services.actions);
+        if (id) colours[one.instruction.utterance].push_back(colours_of(step.observation, *id));
+        give(step);
+      }
+      id = taken(one, services.actions);
+      for (Step& step : one.recovery) give(step);
     }
     return std::make_unique<ActsOnTheLikest>(CloningMethod::learn(shown, services), std::move(colours), names);
   }

@@ -30,9 +30,8 @@ struct TakenFeatures {
   Counts taken, received;  // the latter: what it was brought to, where actions have stations
 
   void add(const lgabench::Demonstration& one, const lgabench::ActionSpace& actions) {
-    const lgabench::Observation& seen = one.steps.at(0).observation;
-    add(taken, seen, lgabench::taken(one, actions));
-    add(received, seen, lgabench::receiving(one, actions));
+    for (const lgabench::Step& step : one.steps) add(taken, step.observation, lgabench::taken(step, actions));
+    add(received, one.steps.at(0).observation, lgabench::receiving(one, actions));
   }
 
  private:

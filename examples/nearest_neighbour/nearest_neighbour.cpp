@@ -50,8 +50,9 @@ class NearestNeighbour : public Method {
     if (demonstrations.empty()) throw MethodError("nearest_neighbour needs a demonstration");
     std::vector<Example> examples;
     for (const Demonstration& demonstration : demonstrations)
-      for (const Step& step : demonstration.steps)
+      for_each_step(demonstration, [&](const Step& step) {
         examples.push_back({goal_mask(step.observation, demonstration.instruction.selection), step.label});
+      });
     services.log.epoch(1, 0, 0.0);  // one pass over the data, no optimiser step
     return std::make_unique<NearestPolicy>(std::move(examples));
   }

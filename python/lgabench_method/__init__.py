@@ -175,26 +175,32 @@ class Observation:
     """The camera's picture. `rgb` is rows x columns x 3, `ids` rows x columns, both uint8; 0 in `ids` is no object.
 
     `shadows` is rows x columns, uint16, or None unless Needs asked for it. Bit k says that the object of instances[k] keeps
-    light from what the pixel shows. repaint() takes shadows away by it.
+    light from what the pixel shows. repaint() takes shadows away by it. `state` has the numbers of layout["observation"]["state"],
+    none where the task has no state. In episodes of several steps `brought` names what was taken so far: (object type, texture).
     """
     rgb: Bytes
     ids: Bytes
     instances: list[Instance]
     shadows: Optional[numpy.typing.NDArray[numpy.uint16]] = None
+    state: Numbers = field(default_factory=lambda: numpy.zeros(0))
+    brought: list[tuple[str, str]] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
 class Step:
-    """An observation with the oracle's action for it, a double for each of layout["action"]["numbers"]."""
+    """An observation with the oracle's action for it, a double for each of layout["action"]["numbers"]; without numbers where
+    nothing is left to do (layout["may_stop"])."""
     observation: Observation
     label: Numbers
 
 
 @dataclass(frozen=True)
 class Demonstration:
-    """The oracle's episode for one instruction; with Needs.noisy_per_clean the recovery steps follow the first."""
+    """The oracle's episode for one instruction: one step, but in tasks of several. With Needs.noisy_per_clean `recovery` has
+    labelled states that noisy executions of the first step led to."""
     instruction: Instruction
     steps: list[Step]
+    recovery: list[Step] = field(default_factory=list)
 
 
 @dataclass
@@ -274,7 +280,7 @@ class Services:
     seed: int                # governs all that is random
     log: TrainingLog
     files: str               # a directory for pictures and curves of the method's own; kept with the cell
-    layout: dict[str, Any]   # "observation" and "action" of the protocol: rows, columns; numbers, rotations, places, stations
+    layout: dict[str, Any]   # "observation", "action" and "may_stop" of the protocol: rows, columns, state; numbers, rotations, ...
     shows_truth: bool = False  # in revise(): the demonstrations' targets are drawn from the true distribution
 
 
@@ -283,7 +289,8 @@ class Policy(Protocol):
     seen_in_training, whether the last act() read, to the byte, an input of training. `run --keep-policy` pickles the policy."""
 
     def act(self, observation: Observation, instruction: Instruction) -> numpy.typing.ArrayLike:
-        """Returns the one action of an episode: a number for each of layout["action"]["numbers"]."""
+        """Returns an action, the only one of an episode but in tasks of several steps: a number for each of
+        layout["action"]["numbers"], or where layout["may_stop"] says so [] for: nothing is left to do."""
 
 
 class Method(Protocol):

@@ -79,7 +79,7 @@ def _most_frequent(colours: numpy.typing.NDArray[numpy.int64]) -> int:
 def usual_background(demonstrations: Iterable[Demonstration]) -> Background:
     """The background of these demonstrations. Its colour at a pixel is that of more than half of the steps in which neither an
     object nor a shadow is there; where there is no such step, the most frequent colour of the other pixels."""
-    seen = [step.observation for one in demonstrations for step in one.steps]
+    seen = [step.observation for one in demonstrations for step in one.steps + one.recovery]
     candidates = numpy.zeros(seen[0].ids.shape, numpy.int64)
     lead, known = numpy.zeros_like(candidates), numpy.zeros(candidates.shape, bool)
     for one in seen:  # a majority vote in one pass (Boyer and Moore 1991)
@@ -157,8 +157,8 @@ def augmented(demonstrations: Sequence[Demonstration], copies: int, augment: Aug
         row = 0
         for one in demonstrations:
             steps = []
-            for step in one.steps:
+            for step in one.steps + one.recovery:
                 steps.append(augment(step, one.instruction.selection, copy, RandomStream(f"learning/augment/{seed}/{row}/{copy}")))
                 row += 1
-            everything.append(Demonstration(one.instruction, steps))
+            everything.append(Demonstration(one.instruction, steps[:len(one.steps)], steps[len(one.steps):]))
     return everything

@@ -176,7 +176,7 @@ class Host:
         self.channel = channel
         if hello["protocol"] != PROTOCOL:
             raise ImportError(f"protocol {hello['protocol']} (this package: {PROTOCOL})")
-        layout = {"observation": hello["observation"], "action": hello["action"]}
+        layout = {"observation": hello["observation"], "action": hello["action"], "may_stop": hello.get("may_stop", False)}
         self.observation = values.ObservationMemory(descriptor, hello["observation"])
         files = os.path.join(os.environ.get("HOME", "."), "files")
         self.log = _Log(channel)
@@ -234,10 +234,12 @@ class Host:
     def act(self, header, payload, descriptor):
         if header["reset"] and hasattr(self.policy, "reset"):
             self.policy.reset()
-        observation = self.observation.read(header["instances"], header.get("shadows", False))
+        observation = self.observation.read(header["instances"], header.get("shadows", False), header.get("state", ()),
+                                            header.get("brought", ()))
+        layout = self.services.layout
         action = values.action_bytes(self.policy.act(observation, values.instruction(header["instruction"])),
-                                     len(self.services.layout["action"]["numbers"]))
-        reply = {"type": "action"}
+                                     len(layout["action"]["numbers"]), layout["may_stop"])
+        reply = {"type": "action"} if action else {"type": "action", "done": True}
         if getattr(self.policy, "seen_in_training", None) is not None:
             reply["seen_in_training"] = bool(self.policy.seen_in_training)
         return reply, action

@@ -103,8 +103,13 @@ def demonstrations(scenario: Scenario = "heart", count: int = 5, *, engine: str 
     with lgabench.Environment(scenario, engine, shadows=shadows) as environment:
         all_of_them = []
         for index in range(count):
-            seen = environment.reset("train", index, seed=seed)
-            all_of_them.append(Demonstration(_instruction(environment), [Step(seen, environment.expert_action())]))
+            steps = [Step(environment.reset("train", index, seed=seed), environment.expert_action())]
+            while environment.scenario.most_steps > 1:
+                result = environment.step(steps[-1].label)
+                if result.terminated or result.truncated:
+                    break
+                steps.append(Step(result.observation, environment.expert_action()))
+            all_of_them.append(Demonstration(_instruction(environment), steps))
         return all_of_them
 
 
@@ -121,7 +126,10 @@ def services(kind: Callable[[], Method], scenario: Scenario = "heart", *, seed: 
         raise ValueError(f"options: unknown {', '.join(sorted(unknown))}, expected among: {', '.join(declared) or 'none'}")
     space = as_scenario(scenario)
     rows, columns = space.picture_size
-    layout = {"observation": {"rows": rows, "columns": columns, "channels": 3}, "action": json.loads(space._core.action_space_json)}
+    layout = {"observation": {"rows": rows, "columns": columns, "channels": 3}, "action": json.loads(space._core.action_space_json),
+              "may_stop": space.may_stop}
+    if space.state:
+        layout["observation"]["state"] = json.loads(space._core.state_json)
     values = {name: one["default"] for name, one in declared.items()} | options
     return Services(TrueAnswers(space), NoPeople(), values, seed, Curves(), tempfile.mkdtemp(prefix="lgabench-files-"), layout)
 
@@ -147,4 +155,5 @@ def try_out(kind: Callable[[], Method], scenario: Scenario = "heart", count: int
     if not os.listdir(lent.files):
         os.rmdir(lent.files)
     with lgabench.Environment(space, engine, shadows=needs.shadows) as environment:
-        return lgabench.evaluate(lambda seen, words: policy.act(seen, Instruction(words, selections[words])), environment, episodes)
+        return lgabench.evaluate(lambda seen, words: policy.act(seen, Instruction(words, selections[words])), environment, episodes,
+                                 reset=getattr(policy, "reset", None))

@@ -130,11 +130,16 @@ def shown_frame(value):
     return header, payload
 
 
-def action_bytes(value, count):
+def action_bytes(value, count, may_stop=False):
+    """b"" where nothing is left to do."""
     numbers = numpy.asarray(value, dtype="<f8")
-    if numbers.shape != (count,):
+    if numbers.shape != (count,) and not (may_stop and numbers.shape == (0,)):
         raise ValueError(f"act() returned an array of shape {numbers.shape}, expected {count} numbers")
     return numbers.tobytes()
+
+
+def named(things):
+    return [(one["object_type"], one["texture"]) for one in things]
 
 
 class ObservationMemory:
@@ -146,7 +151,7 @@ class ObservationMemory:
         self.memory = mmap.mmap(descriptor, rows * columns * (channels + 1), prot=mmap.PROT_READ)
         os.close(descriptor)
 
-    def read(self, instances, shadows=False):
+    def read(self, instances, shadows=False, state=(), brought=()):
         """A copy: the memory holds the next one soon."""
         rows, columns, channels = self.shape
         rgb = numpy.frombuffer(self.memory, numpy.uint8, rows * columns * channels).reshape(self.shape).copy()
@@ -154,7 +159,8 @@ class ObservationMemory:
         bits = numpy.frombuffer(self.memory, "<u2", rows * columns, rows * columns * (channels + 1)) if shadows else None
         return Observation(rgb, ids.reshape(rows, columns).copy(),
                            [Instance(one["id"], one["object_type"], one["texture"], one["pixels"]) for one in instances],
-                           None if bits is None else bits.reshape(rows, columns).copy())
+                           None if bits is None else bits.reshape(rows, columns).copy(), numpy.array(state, numpy.float64),
+                           named(brought))
 
 
 def perceived_frames(value, shape, call):
@@ -189,6 +195,11 @@ def demonstrations(header, descriptor):
     all_of_them = [Demonstration(instruction(json), []) for json in header["instructions"]]
     for step, owner in enumerate(arrays["demonstration"].tolist()):
         seen = Observation(arrays["rgb"][step], arrays["ids"][step], instances[step],
-                           arrays["shadows"][step] if "shadows" in arrays else None)
-        all_of_them[owner].steps.append(Step(seen, arrays["labels"][step]))
+                           arrays["shadows"][step] if "shadows" in arrays else None,
+                           arrays["state"][step] if "state" in arrays else numpy.zeros(0),
+                           named(header["brought"][step]) if "brought" in header else [])
+        stops = "stops" in arrays and arrays["stops"][step]
+        one = all_of_them[owner]
+        steps = one.steps if len(one.steps) < header["trajectory_steps"][owner] else one.recovery
+        steps.append(Step(seen, numpy.zeros(0) if stops else arrays["labels"][step]))
     return all_of_them

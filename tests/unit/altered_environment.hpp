@@ -39,6 +39,7 @@ class AlteredType final : public EnvironmentType {
   const std::vector<std::string>& spaces() const override { return like_.spaces(); }
   const std::vector<std::string>& failures() const override { return like_.failures(); }
   const ActionSpace& action_space() const override { return like_.action_space(); }
+  const std::vector<StateNumber>& state_of(const TaskInfo& task) const override { return like_.state_of(task); }
   PictureSize picture_size() const override { return like_.picture_size(); }
   int most_instances(const TaskInfo& task) const override { return like_.most_instances(task); }
   Vec2 in_picture(Vec3 point_m) const override { return like_.in_picture(point_m); }

@@ -106,13 +106,16 @@ TEST(Dart, AddsOnePairForEachRolloutThatIsNotDropped) {
   const auto pairs = [](const Listener::Outcome& outcome) {
     Listener environment(outcome);
     const std::vector<Demonstration> all = demonstrations(environment, 3);
-    for (const Demonstration& d : all)
-      for (std::size_t i = 0; i < d.steps.size(); ++i) {  // noiseless, and of the state reached
-        const TwoPoses expected = i == 0 ? environment.first : environment.second, label = d.steps[i].label;
+    for (const Demonstration& d : all) {
+      bool is_first = true;
+      for_each_step(d, [&](const Step& step) {  // noiseless, and of the state reached
+        const TwoPoses expected = is_first ? environment.first : environment.second, label = step.label;
         EXPECT_NEAR(label.pose0.position_m.x, expected.pose0.position_m.x, 1e-6);
         EXPECT_NEAR(label.pose1.position_m.y, expected.pose1.position_m.y, 1e-6);
-      }
-    return all.front().steps.size();
+        is_first = false;
+      });
+    }
+    return all.front().steps.size() + all.front().recovery.size();
   };
   EXPECT_EQ(pairs([](int) { return ended(failure::none); }), 1u + per_clean);
   EXPECT_EQ(pairs([](int) { return ended("wrong_object"); }), 1u + per_clean);

@@ -92,16 +92,17 @@ TEST_F(Play, RecoveryAddsDisturbedStatesWithTheirOwnLabels) {
   for (std::size_t i = 0; i < noisy.size(); ++i) {
     EXPECT_EQ(clean[i].steps.size(), 1u);
     EXPECT_EQ(noisy[i].steps.front().observation.rgb, clean[i].steps.front().observation.rgb);
-    EXPECT_LE(noisy[i].steps.size(), 6u);
-    added += noisy[i].steps.size() - 1;
-    for (const Step& step : noisy[i].steps) moved += step.observation.rgb != clean[i].steps.front().observation.rgb;
+    EXPECT_EQ(noisy[i].steps.size(), 1u);
+    EXPECT_LE(noisy[i].recovery.size(), 5u);
+    added += noisy[i].recovery.size();
+    for (const Step& step : noisy[i].recovery) moved += step.observation.rgb != clean[i].steps.front().observation.rgb;
   }
   EXPECT_GT(added, 40u) << "most rollouts stay in the workspace";
   EXPECT_GT(moved, added / 4) << "some rollouts take hold of something and move it";
   // Without noise the action succeeds: the state after it has the target on the goal, and the oracle goes there.
   const auto still = demonstrate(*environment, scenes(1), {Needs::Targets::truth, 1, 0.0}, {""});
-  ASSERT_EQ(still[0].steps.size(), 2u);
-  EXPECT_NEAR(TwoPoses(still[0].steps[1].label).pose0.position_m.y,
+  ASSERT_EQ(still[0].recovery.size(), 1u);
+  EXPECT_NEAR(TwoPoses(still[0].recovery[0].label).pose0.position_m.y,
               TwoPoses(still[0].steps[0].label).pose1.position_m.y, .02);
 }
 
@@ -127,7 +128,7 @@ TEST_F(Play, CircumstancesAddToAFileAndItReadsBackAsBefore) {
   EXPECT_EQ(bytes(before), bytes(without)) << "carrying labels out changes none";
   ASSERT_EQ(c.outcomes.size(), before.size());
   for (std::size_t i = 0; i < before.size(); ++i) {
-    ASSERT_EQ(c.outcomes[i].size(), before[i].steps.size());
+    ASSERT_EQ(c.outcomes[i].size(), 1 + before[i].recovery.size());
     EXPECT_TRUE(c.outcomes[i].front().is_success);
   }
   const std::string more = demonstrations_hdf5(before, "test", &c);
@@ -159,9 +160,11 @@ TEST_F(Play, FileReadsBackAsItWasWritten) {
   EXPECT_EQ(bytes(after), bytes(before));
   for (std::size_t i = 0; i < after.size(); ++i) {
     EXPECT_EQ(after[i].instruction.utterance, "Bring me the heart.");
-    ASSERT_EQ(after[i].steps.size(), before[i].steps.size());
-    for (std::size_t t = 0; t < after[i].steps.size(); ++t) {
-      const Step &a = after[i].steps[t], &b = before[i].steps[t];
+    ASSERT_EQ(after[i].steps.size(), 1u);
+    ASSERT_EQ(after[i].recovery.size(), before[i].recovery.size());
+    for (std::size_t t = 0; t <= after[i].recovery.size(); ++t) {
+      const Step &a = t == 0 ? after[i].steps[0] : after[i].recovery[t - 1],
+                 &b = t == 0 ? before[i].steps[0] : before[i].recovery[t - 1];
       EXPECT_EQ(a.observation.rgb, b.observation.rgb);
       EXPECT_EQ(a.observation.ids, b.observation.ids);
       EXPECT_EQ(a.observation.instances.size(), b.observation.instances.size());
@@ -495,7 +498,7 @@ TEST_F(Play, AFailureIsPerceptionsWhereThePolicySucceedsOnceItSees) {
   Seeing policy([] { return environment->expert_action(); });
   const std::vector<Instruction> instructions{{"u", {}}};
   auto scenes = tests(*scenario, 3);
-  scenes[1].perception = [](Observation seen, const Scene&) {
+  scenes[1].perception = [](Observation seen, const Scene&, int) {
     seen.instances.clear();
     std::fill(seen.ids.begin(), seen.ids.end(), std::uint8_t{0});
     return seen;
@@ -519,7 +522,7 @@ TEST_F(Play, AFailureIsTheReadingsWhereThePolicySucceedsWithTheSimulatorsNames) 
     std::fill(seen.ids.begin(), seen.ids.end(), std::uint8_t{0});
     return seen;
   };
-  scenes[2].perception = [&](const Observation& seen, const Scene&) { return blind(seen); };
+  scenes[2].perception = [&](const Observation& seen, const Scene&, int) { return blind(seen); };
   Actor actor = policy_actor(policy, instructions, "p");
   actor.reads = [&](const Observation& seen, const Scene& scene) { return scene.index == 0 ? seen : blind(seen); };
   auto episodes = evaluate(*environment, scenes, actor, [](int) {});
@@ -573,7 +576,7 @@ TEST_F(Play, ATrainingSeedWithItsOwnScenesHasItsOwnErrors) {
   const auto types_with = [&](std::optional<std::uint64_t> seed) {
     std::vector<std::string> types;
     for (const TestScene& test : tests(*scenario, 10)) {
-      const Observation seen = perception_of(*scenario, arm, seed)(environment->reset(test.scene), test.scene);
+      const Observation seen = perception_of(*scenario, arm, seed)(environment->reset(test.scene), test.scene, 0);
       for (const Instance& instance : seen.instances) types.push_back(instance.object_type);
     }
     return types;

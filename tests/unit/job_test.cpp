@@ -71,7 +71,7 @@ TEST(ShownScenes, AreReadAsTheyWereWrittenAndRefusedWhereTheyAreNone) {
 TEST(Jobs, OfPicturesAreReadAsTheyWereWritten) {
   PictureRequest request{"cells/KEY/cell.json", "test", 4, "0123456789abcdef"};
   request.selections = {{{"distribution", {{"target", 1}}}, {"instances", "all"}}};
-  request.ends = {{"mujoco", {.1, .2}}, {"bullet", {.3}}};
+  request.ends = {{"mujoco", {{.1, .2}}}, {"bullet", {{.3}, {.4}, {}}}};
   const Json json = to_json(request);
   EXPECT_EQ(to_json(read_picture_request(JsonReader(json, "pictures"))), json);
 }

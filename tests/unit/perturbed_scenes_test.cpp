@@ -64,7 +64,7 @@ std::vector<PerturbedEpisode> noted(const Scenario& scenario, std::unique_ptr<Ph
       const Scene control = scenario.environment->sample(scenario, {layout_of(scenario), "test", arm.id, 0}, i);
       Observation seen = environment->reset(scene);
       if (const View view = view_of(scenario, scene); view != View()) seen = environment->look(view);
-      if (perception) seen = perception(seen, scene);
+      if (perception) seen = perception(seen, scene, 0);
       const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(scene.command)];
       const Instruction told{command.utterance, command.truth};
       all.push_back({arm.id, i, arm.perturbation ? arm.perturbation->axis : "",

@@ -148,7 +148,8 @@ Selection preferred(const Command& command, const Selection& selected, const Fea
   }
   Preference preference(selected.target, hypotheses, space, asking.unlisted, asking.share);
   for (const Demonstration* one : shown)
-    if (const auto instance = taken(*one, services.actions)) preference.took(one->steps.at(0).observation, *instance);
+    for (const Step& step : one->steps)
+      if (const auto instance = taken(step, services.actions)) preference.took(step.observation, *instance);
   Pairs asked;
   for (int i = 0; i < asking.questions; ++i) {
     const auto object = uncertain_object(preference, asked, shown);

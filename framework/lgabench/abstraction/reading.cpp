@@ -126,6 +126,8 @@ ReadPicture reading_of(const Scenario& scenario, const Reading& reading, std::sh
       name_by_overlap(read, seen);
     read.rgb = seen.rgb;
     count_pixels(read);
+    read.state = seen.state;
+    read.brought = seen.brought;
     if (!finds) read.shadows = shadows_of(seen.shadows, seen.instances, read.instances);
     return read;
   };

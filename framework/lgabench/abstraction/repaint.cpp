@@ -185,7 +185,7 @@ Background usual_background(const std::vector<Demonstration>& demonstrations) {
   std::vector<int> lead;
   std::vector<bool> known;
   for (const Demonstration& demonstration : demonstrations)
-    for (const Step& step : demonstration.steps) {
+    for_each_step(demonstration, [&](const Step& step) {
       const Observation& seen = step.observation;
       expect_whole(seen);
       const std::size_t pixels = seen.ids.size();
@@ -198,7 +198,7 @@ Background usual_background(const std::vector<Demonstration>& demonstrations) {
         lead[i] += colour == candidates[i] ? 1 : -1;
         known[i] = true;
       }
-    }
+    });
   if (known.empty()) throw InputError("demonstrations: expected a picture, got none");
   std::vector<std::uint32_t> found;
   for (std::size_t i = 0; i < known.size(); ++i)

@@ -76,7 +76,7 @@ SceneScore score(const Scenario& scenario, int command, const Selection& selecti
       const int index = static_cast<int>(turn - commands.begin()) + i * static_cast<int>(commands.size());
       const Scene scene = test_scene(scenario, layout, arm.id, scene_seed, index);
       const Observation drawn = environment.draw(scene, view_of(scenario, scene)),
-                        seen = perceived ? perceived(drawn, scene) : drawn;
+                        seen = perceived ? perceived(drawn, scene, 0) : drawn;
       add_scene(scene, seen, grounded(selection.target, seen), false, score);
     }
   }

@@ -13,34 +13,50 @@
 namespace lgabench {
 namespace {
 
-// Refuses what needs a scene while there is none: environments take a reset for granted. What an environment does
-// against its own interface is its fault.
+// Plays by the interface: refuses what needs a scene while there is none, or an episode that goes on when it is over,
+// and calls what an environment does against its interface its fault.
 class InOrder final : public Environment {
  public:
-  InOrder(std::unique_ptr<Environment> environment, std::string id)
-      : environment_(std::move(environment)), id_(std::move(id)) {}
+  InOrder(std::unique_ptr<Environment> environment, const Scenario& scenario)
+      : environment_(std::move(environment)),
+        id_(scenario.environment->id()),
+        most_steps_(find_task(*scenario.environment, scenario.task).most_steps),
+        may_stop_(scenario.may_stop),
+        state_(state_of(scenario)) {}
 
   const ActionSpace& action_space() const override { return environment_->action_space(); }
+  int most_steps() const override { return most_steps_; }
   Observation reset(const Scene& scene) override {
-    has_scene_ = false;
-    Observation seen = environment_->reset(scene);
-    has_scene_ = true;
+    has_scene_ = over_ = false;
+    steps_ = 0;
     arm_ = scene.arm;
     index_ = scene.index;
-    return seen;
+    Observation seen = environment_->reset(scene);
+    has_scene_ = true;
+    return checked(std::move(seen));
   }
-  Observation look(const View& view) override { return after_reset("look()").look(view); }
+  Observation look(const View& view) override { return checked(after_reset("look()").look(view)); }
   void show_shadows(bool on) override { environment_->show_shadows(on); }
   StepResult step(const Action& action) override {
-    StepResult result = after_reset("step()").step(action);
-    if (!result.terminated && !result.truncated) fail("the episode goes on after its action, and lgabench plays one");
+    Environment& environment = after_reset("step()");
+    if (most_steps_ == 1) return judged(environment.step(action));
+    if (over_)
+      throw Error(fmt::format("step(): scene {} of {} is over after {} steps; expected a reset() before it", index_,
+                              arm_, steps_));
+    // A file has it so, and it must lead to the same when it is played again.
+    StepResult result = environment.step(action.empty() && may_stop_ ? action : stored(action));
+    ++steps_;
+    result = judged(std::move(result));
+    if (steps_ == most_steps_ && !result.terminated) result.truncated = true;
+    over_ = result.terminated || result.truncated;
+    if (action.empty() && !over_) fail("the episode goes on after its actor said that nothing is left to do");
     return result;
   }
   Rejudged judged_again(const JudgeLimits& limits) const override {
     return after_reset("judged_again()").judged_again(limits);
   }
   std::vector<EngineBody> bodies() const override { return after_reset("bodies()").bodies(); }
-  Observation observe() override { return after_reset("observe()").observe(); }
+  Observation observe() override { return checked(after_reset("observe()").observe()); }
   Action expert_action() const override { return after_reset("expert_action()").expert_action(); }
   Action expert_action_for(std::uint8_t instance_id) const override {
     return after_reset("expert_action_for()").expert_action_for(instance_id);
@@ -52,21 +68,52 @@ class InOrder final : public Environment {
     return *environment_;
   }
 
+  Action stored(const Action& action) const {
+    executable(action_space(), action);  // refuses what has no place in a file
+    return as_stored(action_space(), action);
+  }
+
+  StepResult judged(StepResult result) const {
+    const bool over = result.terminated || result.truncated;
+    if (!over && most_steps_ == 1) fail("the episode goes on after its action, and lgabench plays one");
+    if (result.is_success != (result.failure == failure::none))
+      fail(fmt::format("the failure is \"{}\" {} a success", result.failure, result.is_success ? "of" : "without"));
+    if (result.is_success && (!result.terminated || result.truncated)) fail("a success in an episode that did not end");
+    if (most_steps_ > 1 && over == (result.failure == failure::goes_on))
+      fail(fmt::format("the failure of an episode that {} is \"{}\"", over ? "is over" : "goes on", result.failure));
+    result.observation = checked(std::move(result.observation));
+    return result;
+  }
+
+  Observation checked(Observation seen) const {
+    if (seen.state.size() != state_.size())
+      fail(fmt::format("state: expected {} numbers, got {}", state_.size(), seen.state.size()));
+    for (std::size_t i = 0; i < state_.size(); ++i)
+      if (!(seen.state[i] >= state_[i].low && seen.state[i] <= state_[i].high))
+        fail(fmt::format("state: {}: expected {:g} to {:g}, got {:g}", state_[i].name, state_[i].low, state_[i].high,
+                         seen.state[i]));
+    return seen;
+  }
+
   [[noreturn]] void fail(const std::string& what) const {
-    throw EngineError(fmt::format("environment {}: scene {} of {}: {}", id_, index_, arm_, what));
+    const std::string at = most_steps_ == 1 ? "" : fmt::format(", step {}", steps_);
+    throw EngineError(fmt::format("environment {}: scene {} of {}{}: {}", id_, index_, arm_, at, what));
   }
 
   std::unique_ptr<Environment> environment_;
-  std::string id_, arm_;  // the environment's; the scene's
-  int index_ = 0;
-  bool has_scene_ = false;
+  const std::string id_;
+  const int most_steps_;
+  const bool may_stop_;
+  const std::vector<StateNumber>& state_;
+  std::string arm_;
+  int index_ = 0, steps_ = 0;  // of the scene; since reset()
+  bool has_scene_ = false, over_ = false;
 };
 
 }  // namespace
 
 std::unique_ptr<Environment> make_environment(const Scenario& scenario, std::unique_ptr<PhysicsWorld> world) {
-  const EnvironmentType& type = *scenario.environment;
-  return std::make_unique<InOrder>(type.make(std::move(world), scenario), type.id());
+  return std::make_unique<InOrder>(scenario.environment->make(std::move(world), scenario), scenario);
 }
 
 Scene training_scene(const Scenario& scenario, const std::string& layout, const std::vector<Selection>& selections,
@@ -93,16 +140,19 @@ Perception perception_of(const Scenario& scenario, const Arm& arm, std::optional
   if (!perceive && noise.label_noise == 0 && noise.missed_segment == 0 && axes.empty()) return nullptr;
   const std::string own = own_stream(training_seed);
   const int level = arm.perturbation ? arm.perturbation->level : 0;
-  return [&scenario, noise, perceive, own, axes, level, training_seed](const Observation& seen, const Scene& scene) {
+  return [&scenario, noise, perceive, own, axes, level, training_seed](const Observation& seen, const Scene& scene,
+                                                                       int step) {
     const auto stream = [&](const char* of) {
-      return RandomStream(
-          fmt::format("{}/{}/{}/{}{}/{}", of, scene.scenario, scene.layout, scene.seed, own, scene.index));
+      return RandomStream(fmt::format("{}/{}/{}/{}{}/{}{}", of, scene.scenario, scene.layout, scene.seed, own,
+                                      scene.index, later_stream(step)));
     };
     Observation perceived = imperfect_textualization(perceive ? perceive(seen, stream("perception")) : seen,
                                                      scenario.space, noise, stream("textualization"));
     for (const PerturbationAxis* axis : axes)
-      perceived =
-          axis->perceive(std::move(perceived), scenario, level, perturbation_stream(axis->id, scene, training_seed));
+      perceived = axis->perceive(std::move(perceived), scenario, level,
+                                 perturbation_stream(axis->id, scene, training_seed, step));
+    perceived.state = seen.state;  // no error is in it
+    perceived.brought = seen.brought;
     return perceived;
   };
 }

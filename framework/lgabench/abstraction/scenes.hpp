@@ -14,8 +14,10 @@
 
 namespace lgabench {
 
-/// The scenario's environment on that engine. Calls out of order (see Environment) @throw Error, after which calls in
-/// order work. @throws InputError for an environment that is not known.
+/// The scenario's environment on that engine. Calls out of order (see Environment), such as a step after the end of an
+/// episode of several, @throw Error, after which calls in order work. In tasks of several steps actions are carried out
+/// as_stored(), and the last of most_steps() ends the episode. What the environment does against its interface is an
+/// EngineError that names scene and step. @throws InputError for an environment that is not known.
 std::unique_ptr<Environment> make_environment(const Scenario& scenario, std::unique_ptr<PhysicsWorld> world);
 
 /// Scene `index` to demonstrate. Where the scenario leaves it to the method, targets are drawn from `selections`, one a
@@ -31,8 +33,8 @@ Scene sampled_scene(const Scenario& scenario, const SceneRequest& request, int i
 Scene test_scene(const Scenario& scenario, const std::string& layout, const std::string& arm, std::uint64_t scene_seed,
                  int index, std::optional<std::uint64_t> training_seed = std::nullopt);
 
-/// What a policy is given in place of what the environment shows.
-using Perception = std::function<Observation(const Observation& seen, const Scene& scene)>;
+/// What a policy is given in place of what the environment shows after so many steps of the scene.
+using Perception = std::function<Observation(const Observation& seen, const Scene& scene, int step)>;
 
 /// A test scene, and how it is seen.
 struct TestScene {
@@ -43,8 +45,8 @@ struct TestScene {
 };
 
 /// The arm's: its noise, and what the environment adds (EnvironmentType::perception()); null where neither errs. Draws
-/// from a stream in which the arm has no part: more noise adds errors to those that less of it makes. `training_seed`:
-/// as in SceneRequest. @pre the scenario outlives it.
+/// from a stream of the scene and the step in which the arm has no part: more noise adds errors to those that less of
+/// it makes. `training_seed`: as in SceneRequest. @pre the scenario outlives it.
 Perception perception_of(const Scenario& scenario, const Arm& arm,
                          std::optional<std::uint64_t> training_seed = std::nullopt);
 

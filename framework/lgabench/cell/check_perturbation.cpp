@@ -200,7 +200,7 @@ CheckReport in_environments(HostJob job, const CheckPhase& phase, Check check) {
 
 // How many of the objects have their names right, and how many at best where all have one name: such a perceiver has
 // read nothing. A place has the same names in every scene, and is none of these.
-struct Named {
+struct NamesFound {
   int right = 0;
   std::map<std::pair<std::string, std::string>, int> objects{};
 
@@ -232,7 +232,7 @@ std::string read_scenes(const HostJob& job, const CheckPhase& phase, CheckReport
   std::vector<std::string> bytes;
   std::vector<SeenScene> scenes = scenes_of(environment, scenario);
   int calls = 0;
-  Named named;
+  NamesFound named;
   double seconds = 0;
   const auto read = [&](const SeenScene& one) {
     const auto start = std::chrono::steady_clock::now();

@@ -26,7 +26,9 @@ double distance(const Action& a, const Action& b) {
 std::unique_ptr<Policy> ConstantAction::learn(const std::vector<Demonstration>& demonstrations, Services&) {
   std::vector<Action> labels;
   for (const Demonstration& demonstration : demonstrations)
-    for (const Step& step : demonstration.steps) labels.push_back(step.label);
+    for_each_step(demonstration, [&](const Step& step) {
+      if (!step.label.empty()) labels.push_back(step.label);
+    });
   double least = std::numeric_limits<double>::infinity();
   const Action* medoid = nullptr;
   for (const Action& candidate : labels) {

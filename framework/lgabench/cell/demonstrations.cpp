@@ -47,7 +47,30 @@ Action disturbed(const ActionSpace& space, Action action, double sigma, RandomSt
 
 // Rounded as the file rounds it, so that fresh and cached demonstrations train the same policy.
 Action label(const Environment& environment) {
-  return as_stored(environment.action_space(), environment.expert_action());
+  const Action action = environment.expert_action();
+  return action.empty() ? action : as_stored(environment.action_space(), action);
+}
+
+bool is_over(const StepResult& result) { return result.terminated || result.truncated; }
+
+// The oracle's. Its only action is carried out where somebody wants to know what it leads to.
+std::vector<Step> episode(Environment& environment, const Scene& scene, std::vector<StepResult>* results) {
+  std::vector<Step> steps;
+  Observation observation = environment.reset(scene);
+  for (;;) {
+    steps.push_back({std::move(observation), label(environment)});
+    const bool is_only = environment.most_steps() == 1;
+    if (is_only && !results) return steps;
+    StepResult result = environment.step(steps.back().label);
+    if (!is_only && is_over(result) && !result.is_success)
+      throw EngineError(fmt::format("scene {} of {}, step {}: the oracle's episode {}", scene.index, scene.arm,
+                                    steps.size(),
+                                    result.failure == failure::goes_on ? "does not end" : "ends as " + result.failure));
+    const bool was_last = is_only || is_over(result);
+    observation = was_last ? Observation() : result.observation;
+    if (results) results->push_back(std::move(result));
+    if (was_last) return steps;
+  }
 }
 
 // The state that a noisy execution of the oracle's action leads to, labelled; false where it is to be dropped.
@@ -56,7 +79,7 @@ bool recovery_step(Environment& environment, const Scene& scene, double sigma, i
   environment.reset(scene);
   const Action action = disturbed(environment.action_space(), environment.expert_action(), sigma, stream);
   StepResult result = environment.step(action);
-  if (!result.recoverable) return false;
+  if (!result.recoverable || (environment.most_steps() > 1 && is_over(result))) return false;
   step = {std::move(result.observation), label(environment)};
   return true;
 }
@@ -101,18 +124,14 @@ std::vector<Demonstration> demonstrate(Environment& environment, const std::vect
   std::vector<Demonstration> all;
   for (const Scene& scene : scenes) {
     std::vector<StepResult> results;
-    const auto add = [&](Demonstration& demonstration, Step step) {
-      if (outcomes) results.push_back(environment.step(step.label));
-      demonstration.steps.push_back(std::move(step));
-    };
     Demonstration demonstration;
     demonstration.instruction.utterance = utterances.at(static_cast<std::size_t>(scene.command));
-    Observation observation = environment.reset(scene);
-    add(demonstration, {std::move(observation), label(environment)});
+    demonstration.steps = episode(environment, scene, outcomes ? &results : nullptr);
     for (int k = 1; k <= needs.noisy_per_clean; ++k) {
       Step step;
-      if (recovery_step(environment, scene, needs.noise_max * k / needs.noisy_per_clean, k, step))
-        add(demonstration, std::move(step));
+      if (!recovery_step(environment, scene, needs.noise_max * k / needs.noisy_per_clean, k, step)) continue;
+      if (outcomes) results.push_back(environment.step(step.label));
+      demonstration.recovery.push_back(std::move(step));
     }
     all.push_back(std::move(demonstration));
     if (outcomes) outcomes->push_back(std::move(results));

@@ -15,14 +15,18 @@ Episode play(Environment& environment, const TestScene& test, const Actor& actor
   if (test.abstraction_empty) return episode;
   Observation observation = environment.reset(scene);
   if (test.view != View()) observation = environment.look(test.view);
-  if (test.perception) observation = test.perception(observation, scene);
   try {
-    const Move move = actor.act(environment, scene, observation);
-    const StepResult result = environment.step(move.action);  // refuses one that is not executable()
-    episode.failure = result.failure;
-    episode.taken = result.taken;
-    episode.action = as_stored(environment.action_space(), move.action);
-    episode.input_seen = move.input_seen;
+    for (int step = 0;; ++step) {
+      if (test.perception) observation = test.perception(observation, scene, step);
+      const Move move = actor.act(environment, scene, observation, step);
+      StepResult result = environment.step(move.action);  // refuses one that is not executable()
+      episode.failure = result.failure;
+      if (episode.taken == 0) episode.taken = result.taken;
+      episode.add(move.action.empty() ? Action() : as_stored(environment.action_space(), move.action));
+      episode.input_seen = step == 0 || move.input_seen == false ? move.input_seen : episode.input_seen;
+      if (environment.most_steps() == 1 || result.terminated || result.truncated) break;
+      observation = std::move(result.observation);
+    }
   } catch (const MethodError& e) {
     to_stderr("episode {} of {}: {}\n", scene.index, scene.arm, e.what());
     episode.failure = failure::method_error;
@@ -37,8 +41,9 @@ Actor::Told told_by_command(const std::vector<Instruction>& instructions) {
 
 }  // namespace
 
-Move Actor::act(const Environment& environment, const Scene& scene, const Observation& seen) const {
+Move Actor::act(const Environment& environment, const Scene& scene, const Observation& seen, int step) const {
   Given given{scene, seen};
+  given.step = step;
   if (told) given.told = told(scene);
   if (reads) given.read = reads(seen, scene);
   if (recorder) recorder->given(environment, given);
@@ -51,7 +56,7 @@ Actor policy_actor(Policy& policy, Actor::Told told, const std::string& plugin_i
   const auto choose = [&policy, plugin_id](const Environment&, const Given& given) {
     try {
       return guarded(plugin_id, [&] {
-        policy.reset();
+        if (given.step == 0) policy.reset();
         const Action action = policy.act(given.observation(), given.told.value());
         return Move(action, policy.seen_in_training());
       });

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/abstraction/reading.hpp>
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/method.hpp>
@@ -14,7 +15,8 @@
 
 namespace lgabench {
 
-/// An actor's action, and what the actor says of the input that led to it.
+/// An actor's action, empty where it says that nothing is left to do, and what the actor says of the input that led to
+/// it.
 struct Move {
   Move(const Action& does, std::optional<bool> seen = std::nullopt) : action(does), input_seen(seen) {}
   Action action;
@@ -27,11 +29,12 @@ struct Given {
   const Observation& seen;
   std::optional<Observation> read = {};  // what was read of it, given in its place
   std::optional<Instruction> told = {};  // none: a reference row is told nothing
+  int step = 0;                          // of the episode, from 0
 
   const Observation& observation() const { return read ? *read : seen; }
 };
 
-/// Takes note of what an actor is given, episode by episode.
+/// Takes note of what an actor is given, step by step.
 class Recorder {
  public:
   virtual ~Recorder() = default;
@@ -45,14 +48,14 @@ class Recorder {
 struct Actor {
   using Told = std::function<Instruction(const Scene&)>;
 
-  /// Chooses the one action of an episode. @throws MethodError where it cannot.
+  /// Chooses an action. @throws MethodError where it cannot.
   std::function<Move(const Environment&, const Given&)> choose = nullptr;
   Told told = nullptr;           // null: nothing
-  Perception reads = nullptr;    // gives what it is given in place of what is seen; null: that
+  ReadPicture reads = nullptr;   // gives what it is given in place of what is seen; null: that
   Recorder* recorder = nullptr;  // null: nobody takes note
 
   /// @throws as choose()
-  Move act(const Environment& environment, const Scene& scene, const Observation& seen) const;
+  Move act(const Environment& environment, const Scene& scene, const Observation& seen, int step = 0) const;
 };
 
 /// A policy as an actor: it sees the observation and what it is told, nothing else. What it throws, an InputError
@@ -63,8 +66,8 @@ Actor policy_actor(Policy& policy, Actor::Told told, const std::string& plugin_i
 /// of the scenario.
 Actor policy_actor(Policy& policy, const std::vector<Instruction>& instructions, const std::string& plugin_id);
 
-/// One episode a scene, in order; `done(n)` after each. A MethodError fails its episode as method_error. @throws
-/// EngineError if the engine fails: then nothing can be said of the method.
+/// One episode a scene, in order, each until it is over; `done(n)` after each. A MethodError fails its episode as
+/// method_error. @throws EngineError if the engine or the environment fails: then nothing can be said of the method.
 std::vector<Episode> evaluate(Environment& environment, const std::vector<TestScene>& scenes, const Actor& actor,
                               const std::function<void(int)>& done);
 

@@ -122,6 +122,15 @@ std::array<hsize_t, 2> sizes(PictureSize picture) {
 
 // Of steps or of their results, which all are of one environment.
 template <class WithObservations>
+void write_state(const Library& h5, hid_t obs, const WithObservations& all) {
+  std::vector<double> state;
+  for (const auto& one : all) state.insert(state.end(), one.observation.state.begin(), one.observation.state.end());
+  const std::size_t numbers = all.front().observation.state.size();
+  if (numbers > 0) write_dataset(h5, obs, "state", H5T_IEEE_F64LE, {all.size(), numbers}, state.data(), false);
+}
+
+// Likewise.
+template <class WithObservations>
 void write_observations(const Library& h5, hid_t group, const char* name, const WithObservations& all) {
   std::vector<std::uint8_t> rgb, ids;
   std::vector<std::uint16_t> shadows;
@@ -136,36 +145,60 @@ void write_observations(const Library& h5, hid_t group, const char* name, const 
   write_dataset(h5, obs, "rgb", H5T_STD_U8LE, {steps, rows, columns, 3}, rgb.data(), true);
   write_dataset(h5, obs, "ids", H5T_STD_U8LE, {steps, rows, columns}, ids.data(), true);
   if (!shadows.empty()) write_dataset(h5, obs, "shadows", H5T_STD_U16LE, {steps, rows, columns}, shadows.data(), true);
+  write_state(h5, obs, all);
 }
 
-void write_demonstration(const Library& h5, hid_t group, const Demonstration& demonstration) {
+Json brought_json(const Observation& observation) {
+  Json all = Json::array();
+  for (const Named& one : observation.brought)
+    all.push_back({{"object_type", one.object_type}, {"texture", one.texture}});
+  return all;
+}
+
+void write_text(const Library& h5, hid_t group, const char* name, const Json& json) {
+  const std::string text = canonical(json);  // a dataset, not an attribute: attributes end at 64 KiB
+  write_dataset(h5, group, name, H5T_STD_U8LE, {text.size()}, text.data(), false);
+}
+
+void write_demonstration(const Library& h5, hid_t group, const Demonstration& demonstration, std::size_t numbers) {
+  std::vector<Step> all = demonstration.steps;
+  all.insert(all.end(), demonstration.recovery.begin(), demonstration.recovery.end());
   std::vector<float> actions;
-  Json instances = Json::array();
-  for (const Step& step : demonstration.steps) {
+  std::vector<std::uint8_t> stops;
+  Json instances = Json::array(), brought = Json::array();
+  bool any_stops = false, any_brought = false;
+  for (const Step& step : all) {
     actions.insert(actions.end(), step.label.begin(), step.label.end());
+    actions.resize((stops.size() + 1) * numbers);  // zeros where there is no label
+    stops.push_back(step.label.empty() ? 1 : 0);
+    any_stops = any_stops || step.label.empty();
     instances.push_back(instances_json(step.observation));
+    brought.push_back(brought_json(step.observation));
+    any_brought = any_brought || !step.observation.brought.empty();
   }
-  const Step& first = demonstration.steps.front();
-  const hsize_t steps = demonstration.steps.size();
+  const hsize_t steps = all.size();
   write_attribute(h5, group, "num_samples", static_cast<std::int64_t>(steps));
   write_attribute(h5, group, "utterance", demonstration.instruction.utterance);
-  // A dataset, not an attribute: attributes end at 64 KiB.
-  const std::string table = canonical(instances);
-  write_dataset(h5, group, "actions", H5T_IEEE_F32LE, {steps, first.label.size()}, actions.data(), false);
-  write_dataset(h5, group, "instances", H5T_STD_U8LE, {table.size()}, table.data(), false);
-  write_observations(h5, group, "obs", demonstration.steps);
+  if (demonstration.steps.size() != 1)
+    write_attribute(h5, group, "trajectory_steps", static_cast<std::int64_t>(demonstration.steps.size()));
+  write_dataset(h5, group, "actions", H5T_IEEE_F32LE, {steps, numbers}, actions.data(), false);
+  write_text(h5, group, "instances", instances);
+  write_observations(h5, group, "obs", all);
+  if (any_stops) write_dataset(h5, group, "stops", H5T_STD_U8LE, {steps}, stops.data(), false);
+  if (any_brought) write_text(h5, group, "brought", brought);
   if (demonstration.instruction.selection.empty()) return;  // as in the cache, whose steps serve whoever selects
   Json about = distribution_json(demonstration.instruction.selection);
   about["provenance"] = to_string(demonstration.instruction.selection.provenance);
-  const std::string selection = canonical(about);
-  write_dataset(h5, group, "selection", H5T_STD_U8LE, {selection.size()}, selection.data(), false);
+  write_text(h5, group, "selection", about);
 }
 
-void write_results(const Library& h5, hid_t group, const std::vector<StepResult>& results) {
+// Of an episode of so many steps, and recovery steps after it.
+void write_results(const Library& h5, hid_t group, const std::vector<StepResult>& results, std::size_t trajectory) {
   write_observations(h5, group, "next_obs", results);
   std::vector<float> rewards;
   for (const StepResult& result : results) rewards.push_back(result.is_success ? 1 : 0);
-  const std::vector<std::uint8_t> dones(results.size(), 1);
+  std::vector<std::uint8_t> dones(results.size(), 1);
+  std::fill_n(dones.begin(), trajectory - 1, 0);
   write_dataset(h5, group, "rewards", H5T_IEEE_F32LE, {results.size()}, rewards.data(), false);
   write_dataset(h5, group, "dones", H5T_STD_U8LE, {results.size()}, dones.data(), false);
 }
@@ -215,6 +248,16 @@ std::string read_text(const Library& h5, hid_t object, const char* name, const s
   return text.substr(0, text.find('\0'));
 }
 
+std::int64_t read_number(const Library& h5, hid_t object, const char* name, const std::string& place) {
+  const Handle attribute = h5.handle(H5Aopen(object, name, H5P_DEFAULT), place + "@" + name);
+  const Handle type = h5.handle(H5Aget_type(attribute), place), space = h5.handle(H5Aget_space(attribute), place);
+  if (H5Tget_class(type) != H5T_INTEGER || H5Sget_simple_extent_npoints(space) != 1)
+    h5.fail(place, fmt::format("expected one whole number as attribute \"{}\"", name));
+  std::int64_t number = 0;
+  h5.check(H5Aread(attribute, H5T_NATIVE_INT64, &number), place);
+  return number;
+}
+
 // Reads a dataset whose shape must be `sizes`; 0 stands for any, and becomes what was found.
 template <class T>
 std::vector<T> read_dataset(const Library& h5, hid_t group, const char* name, hid_t type, Sizes& sizes,
@@ -241,11 +284,36 @@ std::vector<T> read_dataset(const Library& h5, hid_t group, const char* name, hi
   return values;
 }
 
-Demonstration read_demonstration(const Library& h5, hid_t group, const std::string& place) {
-  Sizes table_size{0};
-  const auto bytes = read_dataset<std::uint8_t>(h5, group, "instances", H5T_NATIVE_UINT8, table_size, place);
+Json read_json_text(const Library& h5, hid_t group, const char* name, const std::string& place) {
+  Sizes size{0};
+  const auto bytes = read_dataset<std::uint8_t>(h5, group, name, H5T_NATIVE_UINT8, size, place);
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const Json tables = parse_json(text, fmt::format("{}: {}/instances", h5.file(), place));
+  return parse_json(text, fmt::format("{}: {}/{}", h5.file(), place, name));
+}
+
+// What only some files have; none where this one has it not.
+template <class T>
+std::vector<T> read_optional(const Library& h5, hid_t group, const char* name, hid_t type, Sizes& sizes,
+                             const std::string& place) {
+  return H5Lexists(group, name, H5P_DEFAULT) > 0 ? read_dataset<T>(h5, group, name, type, sizes, place)
+                                                 : std::vector<T>();
+}
+
+std::vector<std::vector<Named>> read_brought(const Library& h5, hid_t group, const std::string& place,
+                                             std::size_t steps) {
+  std::vector<std::vector<Named>> all(steps);
+  if (H5Lexists(group, "brought", H5P_DEFAULT) <= 0) return all;
+  const Json json = read_json_text(h5, group, "brought", place);
+  const auto lists = JsonReader(json, h5.file(), place + "/brought").elements();
+  if (lists.size() != steps) h5.fail(place + "/brought", fmt::format("expected {} lists", steps));
+  for (std::size_t t = 0; t < steps; ++t)
+    for (const JsonReader& one : lists[t].elements())
+      all[t].push_back({one.at("object_type").string(), one.at("texture").string()});
+  return all;
+}
+
+Demonstration read_demonstration(const Library& h5, hid_t group, const std::string& place) {
+  const Json tables = read_json_text(h5, group, "instances", place);
   const auto instances = JsonReader(tables, h5.file(), place + "/instances").elements();
   const hsize_t steps = instances.size();
   if (steps == 0 || steps > 10000) h5.fail(place, "expected 1 to 10000 steps");
@@ -254,9 +322,15 @@ Demonstration read_demonstration(const Library& h5, hid_t group, const std::stri
   const auto rgb = read_dataset<std::uint8_t>(h5, group, "obs/rgb", H5T_NATIVE_UINT8, rgb_size, place);
   Sizes ids_size{steps, rgb_size[1], rgb_size[2]};
   const auto ids = read_dataset<std::uint8_t>(h5, group, "obs/ids", H5T_NATIVE_UINT8, ids_size, place);
-  std::vector<std::uint16_t> shadows;
-  if (H5Lexists(group, "obs/shadows", H5P_DEFAULT) > 0)
-    shadows = read_dataset<std::uint16_t>(h5, group, "obs/shadows", H5T_NATIVE_UINT16, ids_size, place);
+  const auto shadows = read_optional<std::uint16_t>(h5, group, "obs/shadows", H5T_NATIVE_UINT16, ids_size, place);
+  Sizes state_size{steps, 0}, stops_size{steps};
+  const auto state = read_optional<double>(h5, group, "obs/state", H5T_NATIVE_DOUBLE, state_size, place);
+  const auto stops = read_optional<std::uint8_t>(h5, group, "stops", H5T_NATIVE_UINT8, stops_size, place);
+  auto brought = read_brought(h5, group, place, steps);
+  std::int64_t trajectory = 1;  // the steps after it are recovery steps
+  if (H5Aexists(group, "trajectory_steps") > 0) trajectory = read_number(h5, group, "trajectory_steps", place);
+  if (trajectory < 1 || trajectory > static_cast<std::int64_t>(steps))
+    h5.fail(place, fmt::format("expected 1 to {} trajectory_steps", steps));
   const PictureSize picture{static_cast<int>(ids_size[1]), static_cast<int>(ids_size[2])};
 
   Demonstration demonstration;
@@ -270,9 +344,12 @@ Demonstration read_demonstration(const Library& h5, hid_t group, const std::stri
     step.observation = {picture, slice(rgb, picture.pixels() * 3), slice(ids, picture.pixels()),
                         read_instances(instances[t], picture)};
     if (!shadows.empty()) step.observation.shadows = slice(shadows, picture.pixels());
+    if (!state.empty()) step.observation.state = slice(state, state_size[1]);
+    step.observation.brought = std::move(brought[t]);
     const float* const label = actions.data() + t * actions_size[1];
-    step.label.assign(label, label + actions_size[1]);
-    demonstration.steps.push_back(std::move(step));
+    if (stops.empty() || stops[t] == 0) step.label.assign(label, label + actions_size[1]);
+    auto& list = t < static_cast<std::size_t>(trajectory) ? demonstration.steps : demonstration.recovery;
+    list.push_back(std::move(step));
   }
   return demonstration;
 }
@@ -291,11 +368,15 @@ std::string demonstrations_hdf5(const std::vector<Demonstration>& demonstrations
   {
     const Handle data = make_group(h5, file, "data");
     std::int64_t total = 0;
+    std::size_t numbers = 0;
+    for (const Demonstration& one : demonstrations)
+      for_each_step(one, [&](const Step& step) { numbers = std::max(numbers, step.label.size()); });
     for (std::size_t i = 0; i < demonstrations.size(); ++i) {
       const Handle group = make_group(h5, data, fmt::format("demo_{}", i));
-      write_demonstration(h5, group, demonstrations[i]);
-      if (circumstances) write_results(h5, group, circumstances->outcomes.at(i));
-      total += static_cast<std::int64_t>(demonstrations[i].steps.size());
+      write_demonstration(h5, group, demonstrations[i], numbers);
+      const std::size_t steps = demonstrations[i].steps.size();
+      if (circumstances) write_results(h5, group, circumstances->outcomes.at(i), steps);
+      total += static_cast<std::int64_t>(steps + demonstrations[i].recovery.size());
     }
     write_attribute(h5, data, "total", total);
     constexpr int gym_type = 2;  // robomimic's EnvType.GYM_TYPE

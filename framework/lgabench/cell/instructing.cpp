@@ -48,6 +48,8 @@ Instruction instruction_in(const Scene& scene, const Scenario& scenario, const C
 }
 
 void PerturbedLines::given(const Environment& environment, const Given& given) {
+  is_first_ = given.step == 0;
+  if (!is_first_) return;
   const Scene& scene = given.scene;
   const std::optional<std::uint64_t> seed = cell_.scenes_of_seed();
   const auto& perturbation = scenario_.arm(scene.arm).perturbation;
@@ -71,7 +73,7 @@ void PerturbedLines::given(const Environment& environment, const Given& given) {
 }
 
 void PerturbedLines::acted() {
-  if (policy_) episodes_.back().read = read_by(*policy_, cell_.method.id);
+  if (policy_ && is_first_) episodes_.back().read = read_by(*policy_, cell_.method.id);
 }
 
 std::string PerturbedLines::text() const {

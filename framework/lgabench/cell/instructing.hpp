@@ -14,7 +14,7 @@ namespace lgabench {
 Instruction instruction_in(const Scene& scene, const Scenario& scenario, const Cell& cell,
                            const std::vector<Instruction>& instructions);
 
-/// perturbed.jsonl as it grows: hashes of what an actor is given in each episode of the cell.
+/// perturbed.jsonl as it grows: hashes of what an actor is given first in each episode of the cell.
 class PerturbedLines final : public Recorder {
  public:
   /// `selected`: an instruction for each command, before perturbations. `policy` is null for a reference row. All
@@ -35,6 +35,7 @@ class PerturbedLines final : public Recorder {
   const std::vector<Instruction>& selected_;
   const Policy* const policy_;
   std::vector<PerturbedEpisode> episodes_;
+  bool is_first_ = false;  // the step that was given last, of its episode
 };
 
 /// Where an axis gives other commands: notes what each episode took, in the scene's own control as in every arm.

@@ -70,6 +70,7 @@ std::array<std::string, parts> parts_of(const PlayedScene& played, const Observa
   of(EpisodePart::control) = hash_of(control);
   std::string input = of(EpisodePart::rgb) + of(EpisodePart::ids) + of(EpisodePart::instances) + canonical(pixels);
   if (read) input += names_hash(*read);
+  if (!given.state.empty()) input += canonical(Json(given.state));
   for (const std::uint16_t bits : given.shadows) {
     input += static_cast<char>(bits);
     input += static_cast<char>(bits >> 8);

@@ -73,6 +73,7 @@ std::unique_ptr<HostedMethod> hosted(const CellJob& job, const PluginInfo& plugi
   HostJob host = host_job(job, plugin, options, scratch);
   host.debugger = job.debugger;
   host.task = job.cell.scenario->at("task").get<std::string>();
+  host.may_stop = job.cell.scenario->value("may_stop", false);
   return std::make_unique<HostedMethod>(host);
 }
 
@@ -131,7 +132,7 @@ std::vector<Demonstration> as_given(std::vector<Demonstration> demonstrations, c
   if (cell.train_on) demonstrations = perceived(std::move(demonstrations), scenes, scenario, *cell.train_on);
   if (!reading) return demonstrations;
   for (std::size_t i = 0; i < demonstrations.size(); ++i)
-    for (Step& step : demonstrations[i].steps) step.observation = reading(step.observation, scenes.at(i));
+    for_each_step(demonstrations[i], [&](Step& step) { step.observation = reading(step.observation, scenes.at(i)); });
   return demonstrations;
 }
 
@@ -252,6 +253,8 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   TrainingLines training(count);
   Services services{*answers.lm, *answers.human,       cell.method.options, cell.training_seed,
                     training,    actions_of(scenario), answers.truth};
+  services.state = state_of(scenario);
+  services.may_stop = scenario.may_stop;
   Selecting selecting(method.get(), scenario, cell, services);
   const Selected& selected = selecting.current();
 

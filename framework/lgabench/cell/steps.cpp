@@ -108,14 +108,21 @@ std::vector<Demonstration> perceived(std::vector<Demonstration> demonstrations, 
   const PerturbationAxis& axis = *axes_named(through.axis).front();
   for (std::size_t i = 0; i < demonstrations.size(); ++i) {
     const Scene& scene = scenes.at(i);
-    const auto stream = [&](const char* of) {
-      return RandomStream(fmt::format("train_on/{}/{}/{}/{}/{}/{}", of, axis.id, scene.scenario, scene.layout,
-                                      scene.seed, scene.index));
+    const auto stream = [&](const char* of, const std::string& later = "") {
+      return RandomStream(fmt::format("train_on/{}/{}/{}/{}/{}/{}{}", of, axis.id, scene.scenario, scene.layout,
+                                      scene.seed, scene.index, later));
     };
     const int drawn = 1 + static_cast<int>(stream("level").below(static_cast<std::uint32_t>(axis.most())));
-    for (Step& step : demonstrations[i].steps)
-      step.observation =
-          axis.perceive(std::move(step.observation), scenario, through.level.value_or(drawn), stream("direction"));
+    int t = 0;
+    const auto perceive = [&](Step& step, const std::string& later) {
+      const Observation told = step.observation;
+      step.observation = axis.perceive(std::move(step.observation), scenario, through.level.value_or(drawn),
+                                       stream("direction", later));
+      step.observation.state = told.state;
+      step.observation.brought = told.brought;
+    };
+    for (Step& step : demonstrations[i].steps) perceive(step, later_stream(t++));
+    for (Step& step : demonstrations[i].recovery) perceive(step, "");
   }
   return demonstrations;
 }

@@ -28,12 +28,25 @@ std::vector<double> numbers_of(const JsonReader& list) {
 
 }  // namespace
 
+Json to_json(const std::vector<ActionNumber>& numbers) {
+  Json all = Json::array();
+  for (const ActionNumber& n : numbers)
+    all.push_back({{"name", n.name}, {"unit", n.unit}, {"low", n.low}, {"high", n.high}});
+  return all;
+}
+
+std::vector<ActionNumber> read_numbers(const JsonReader& list) {
+  std::vector<ActionNumber> all;
+  for (const JsonReader& number : list.elements())
+    all.push_back({number.at("name").string(), number.at("unit").string(), number.at("low").number(),
+                   number.at("high").number()});
+  return all;
+}
+
 Json to_json(const ActionSpace& space) {
-  Json numbers = Json::array(), places = Json::array();
-  for (const ActionNumber& n : space.numbers)
-    numbers.push_back({{"name", n.name}, {"unit", n.unit}, {"low", n.low}, {"high", n.high}});
+  Json places = Json::array();
   for (const PicturePlace& place : space.places) places.push_back({place.down, place.across});
-  Json json{{"numbers", numbers}, {"rotations", space.rotations}, {"places", places}};
+  Json json{{"numbers", to_json(space.numbers)}, {"rotations", space.rotations}, {"places", places}};
   if (space.stations.all.empty()) return json;
   Json all = Json::array();
   for (const Stations::Station& one : space.stations.all)
@@ -44,9 +57,7 @@ Json to_json(const ActionSpace& space) {
 
 ActionSpace read_action_space(const JsonReader& reader) {
   ActionSpace space;
-  for (const JsonReader& number : reader.at("numbers").elements())
-    space.numbers.push_back({number.at("name").string(), number.at("unit").string(), number.at("low").number(),
-                             number.at("high").number()});
+  space.numbers = read_numbers(reader.at("numbers"));
   const auto indices = [&](const JsonReader& list) {
     std::vector<std::size_t> all;
     for (const JsonReader& index : list.elements())

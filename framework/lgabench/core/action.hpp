@@ -13,11 +13,14 @@ namespace lgabench {
 /// The numbers of one action, in the order of its environment's ActionSpace.
 using Action = std::vector<double>;
 
-/// What one number of an action is.
+/// What one number of an action is, or of a state.
 struct ActionNumber {
   std::string name, unit;  // "pose0.x", "m"; "" for a number without a unit
   double low, high;        // what is outside is clipped when the action is carried out
 };
+
+/// What one number of Observation::state is: its value lies within the bounds.
+using StateNumber = ActionNumber;
 
 /// Two numbers of an action that are a place in the picture; their bounds are the picture's edges.
 struct PicturePlace {
@@ -47,6 +50,11 @@ struct ActionSpace {
 
   std::size_t size() const { return numbers.size(); }
 };
+
+/// [{"name", "unit", "low", "high"}, ...]
+Json to_json(const std::vector<ActionNumber>& numbers);
+/// @throws InputError
+std::vector<ActionNumber> read_numbers(const JsonReader& list);
 
 /// {"numbers": [{"name", "unit", "low", "high"}, ...], "rotations": [[index, ...], ...], "places": [[down, across],
 /// ...]}, and where there are stations "stations": {"numbers": [index, ...], "all": [{"seen": [down, across], "values":

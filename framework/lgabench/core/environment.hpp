@@ -19,6 +19,7 @@ using Failure = std::string;
 namespace failure {
 inline constexpr const char* none = "none";
 inline constexpr const char* truncated = "truncated";                  // the limit in simulation steps was reached
+inline constexpr const char* goes_on = "goes_on";                      // it has not ended: of tasks of several steps
 inline constexpr const char* abstraction_empty = "abstraction_empty";  // nothing was selected: not played
 inline constexpr const char* method_error = "method_error";            // the method threw, or gave no finite action
 }  // namespace failure
@@ -33,11 +34,11 @@ struct Gap {
 /// What an action led to.
 struct StepResult {
   Observation observation;  // after the motion, at rest
-  bool terminated = false;  // the task's one action is done
-  bool truncated = false;   // the limit in simulation steps was reached: never a success
+  bool terminated = false;  // the episode is over, as it is after the one action of most tasks
+  bool truncated = false;   // it is over since a limit was reached, in simulation steps or steps: never a success
   bool is_success = false;
   bool recoverable = true;          // false: no further action can make it a success
-  Failure failure = failure::none;  // none exactly if is_success
+  Failure failure = failure::none;  // none exactly if is_success; goes_on exactly until the episode is over
   std::uint8_t taken = 0;           // the instance that was moved on purpose; 0: none, or unknown
   std::vector<Gap> gaps;            // the same parts in every scene of a task, all 0 if is_success; empty: unknown
 };
@@ -68,6 +69,9 @@ class Environment {
   /// What the numbers of the environment's actions mean; does not change.
   virtual const ActionSpace& action_space() const = 0;
 
+  /// TaskInfo::most_steps, as make_environment() knows it: no environment says it itself.
+  virtual int most_steps() const { return 1; }
+
   /// Builds the scene anew. Pure: the same scene gives the same bytes, whatever was played before.
   /// @throws EngineError if the engine fails, InputError for an unknown object type or texture.
   virtual Observation reset(const Scene& scene) = 0;
@@ -84,7 +88,9 @@ class Environment {
   }
 
   /// Carries out the action until all is at rest. May be called again: the next action starts from the state reached
-  /// (demonstrations with injected noise need it), and success is judged against the scene's beginning.
+  /// (demonstrations with injected noise need it), and success is judged against the scene's beginning. In tasks of
+  /// several steps it is called until the episode is over. An empty action says that nothing is left to do; it comes
+  /// only where the scenario says may_stop.
   /// @throws MethodError for an action that is not executable(), EngineError if the engine fails.
   virtual StepResult step(const Action& action) = 0;
 
@@ -95,7 +101,7 @@ class Environment {
   /// What is seen in the present state. An onlooker at the engine may call this while step() is under way.
   virtual Observation observe() = 0;
 
-  /// The oracle's action in the present state, for the scene's target.
+  /// The oracle's action in the present state, for the scene's target; empty as in step().
   virtual Action expert_action() const = 0;
 
   /// The action that the oracle would choose if `instance_id` were the target.

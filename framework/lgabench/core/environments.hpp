@@ -1,6 +1,7 @@
 // The installed environments: what the framework asks of an environment beside playing scenes (environment.hpp).
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -23,6 +24,9 @@ struct TaskInfo {
   std::optional<SecondRole> second;   // the set of objects that its commands speak of beside the target
   std::vector<std::string> failures;  // the task's own words, beside those that all tasks of the environment share
   std::string example;                // a shipped scenario: what checks play where any scenario of the task will do
+  /// Actions of an episode. More than one: steps follow each other until StepResult says that the episode is over, or
+  /// there were so many, which is a failure.
+  int most_steps = 1;
 };
 
 /// All that a scene depends on (docs/protocol.md, section 3): not engine, method, thread or host.
@@ -42,6 +46,9 @@ struct SceneRequest {
 /// The part of a random stream's name that tells training seeds with scenes of their own apart; "" where all share
 /// them.
 std::string own_stream(std::optional<std::uint64_t> training_seed);
+
+/// The same of an observation after so many steps: "" at the scene's beginning.
+std::string later_stream(int step);
 
 /// How far one action lies from another that should do the same.
 struct ActionDistance {
@@ -86,6 +93,8 @@ class EnvironmentType {
   virtual const ActionSpace& action_space() const = 0;
   /// The same as methods of that task are told it: with the task's stations, if it has any.
   virtual const ActionSpace& action_space_of(const TaskInfo& /*task*/) const { return action_space(); }
+  /// What the numbers of Observation::state mean in that task; none, as by default, where it has no state.
+  virtual const std::vector<StateNumber>& state_of(const TaskInfo& task) const;
   /// The size of each observation.
   virtual PictureSize picture_size() const = 0;
   /// How many instances an observation of that task may have, whatever the scenario.
@@ -146,9 +155,12 @@ class EnvironmentType {
   virtual std::unique_ptr<Environment> make(std::unique_ptr<PhysicsWorld> engine, const Scenario& scenario) const = 0;
 };
 
-/// The environment named `id`: the shared library lgabench_env_ID beside lgabench's own, loaded when it is first asked
-/// for. @throws InputError for one that is not installed.
+/// The environment named `id`: the shared library lgabench_env_ID beside lgabench's own, or in a directory that the
+/// variable LGABENCH_ENVIRONMENT_PATH lists, loaded when it is first asked for. @throws InputError for one that is not
+/// installed.
 const EnvironmentType& find_environment(const std::string& id);
+/// Its library. @throws as above
+std::filesystem::path environment_file(const std::string& id);
 
 /// Ids of all that are installed, sorted.
 std::vector<std::string> environment_ids();
@@ -168,6 +180,8 @@ std::vector<std::string> failure_words();
 std::vector<std::string> layouts_of(const Scenario& scenario);
 /// What a method is told of the actions of the scenario's task.
 const ActionSpace& actions_of(const Scenario& scenario);
+/// What a method is told of the states of the scenario's task.
+const std::vector<StateNumber>& state_of(const Scenario& scenario);
 /// How many instances an observation may have.
 int most_instances_of(const Scenario& scenario);
 /// The environment's task of that id. @throws InputError that lists the known ones.

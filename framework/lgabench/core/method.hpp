@@ -25,21 +25,34 @@ struct Instruction {
   Selection selection;
 };
 
-/// One observation with the oracle's action for it. The label is noiseless, also where noise led to the observation.
+/// One observation with the oracle's action for it. The label is noiseless, also where noise led to the observation. It
+/// is empty where the oracle says that nothing is left to do (Services::may_stop).
 struct Step {
   Observation observation;
   Action label;
 };
 
-/// The oracle's episode for one instruction. With `Needs::noisy_per_clean`, recovery steps follow the first step.
+/// The oracle's episode for one instruction.
 struct Demonstration {
   Instruction instruction;
-  std::vector<Step> steps;
+  std::vector<Step> steps;  // one after the other; one alone but in tasks of several steps
+  /// With `Needs::noisy_per_clean`: states that noisy executions of the first step led to, labelled. No episode.
+  std::vector<Step> recovery = {};
 };
 
-/// Id of the instance that the first step's label takes or, in a sweep, pushes. It is the visible instance nearest to
-/// the action's first place if that lies within two pixels, else the first instance on the straight way to the second
-/// place, else the nearest. A place type (`is_place`) is never taken. None where no other instance is in view.
+/// Calls call(step) for each step of the episode, then for each recovery step.
+template <class Of, class Call>
+void for_each_step(Of& demonstration, Call&& call) {
+  for (auto* const steps : {&demonstration.steps, &demonstration.recovery})
+    for (auto& step : *steps) call(step);
+}
+
+/// Id of the instance that the step's label takes or, in a sweep, pushes. It is the visible instance nearest to the
+/// action's first place if that lies within two pixels, else the first instance on the straight way to the second
+/// place, else the nearest. A place type (`is_place`) is never taken. None where no other instance is in view, or the
+/// label is none.
+std::optional<std::uint8_t> taken(const Step& step, const ActionSpace& actions);
+/// That of the first step.
 std::optional<std::uint8_t> taken(const Demonstration& demonstration, const ActionSpace& actions);
 
 /// What a method asks of the data it learns from.
@@ -85,6 +98,9 @@ struct Services {
   /// In revise(): whether the demonstrations' targets are drawn from the true distribution, as their method or the
   /// scenario wants it. Otherwise they show what was selected, and tell nothing more of the command.
   bool shows_truth = false;
+  std::vector<StateNumber> state = {};  // what the numbers of Observation::state mean; none where there are none
+  /// Whether an episode of several steps ends when act() returns an empty action: nothing is left to do.
+  bool may_stop = false;
 };
 
 /// What was learned. It may outlive its Method and the demonstrations. One thread.
@@ -93,12 +109,12 @@ class Policy {
   virtual ~Policy() = default;
   /// Called before each episode.
   virtual void reset() {}
-  /// Chooses the one action of an episode. The action must be a function of the arguments and of what was learned: the
-  /// same scene gives the same action, whatever was played before. `observation` comes from a scene that was not
-  /// demonstrated. `instruction` may hold an utterance that was not demonstrated, and any Selection, even an empty or
-  /// the true one.
+  /// Chooses an action, the only one of an episode but in tasks of several steps. The action must be a function of what
+  /// was learned and of the arguments since reset(): the same observations give the same action, whatever was played
+  /// before. `observation` comes from a scene that was not demonstrated. `instruction` may hold an utterance that was
+  /// not demonstrated, and any Selection, even an empty or the true one.
   /// @returns the numbers of Services::actions. If one is missing, surplus or not finite, the episode fails as
-  /// method_error.
+  /// method_error; but an empty action ends it where Services::may_stop says so.
   virtual Action act(const Observation& observation, const Instruction& instruction) = 0;
   /// Whether the last act()'s whole input was, to the byte, one that the policy learned from. None where the policy
   /// does not tell.

@@ -15,6 +15,14 @@ struct Instance {
   int pixels = 0;  // visible now; 0 if hidden
 };
 
+/// An object's names alone.
+struct Named {
+  std::string object_type, texture;
+};
+inline bool operator==(const Named& a, const Named& b) {
+  return a.object_type == b.object_type && a.texture == b.texture;
+}
+
 /// Rows of a picture, from the top, and its columns, from the left.
 struct PictureSize {
   int rows = 0, columns = 0;
@@ -33,6 +41,10 @@ struct Observation {
   /// rows x columns. Bit k says that the object in row k of `instances` keeps light from what the pixel shows, whatever
   /// else does so too. Empty unless a method asks for it (Needs::shadows). repaint() takes shadows away by it.
   std::vector<std::uint16_t> shadows = {};
+  /// What the picture need not show, such as where the agent is: numbers of EnvironmentType::state_of(). Empty where
+  /// the task has none.
+  std::vector<double> state = {};
+  std::vector<Named> brought = {};  // in episodes of several steps: what was taken so far, in order
 };
 
 /// Brightness of a colour in an object's shadow, in 1/256 of its brightness in the light.

@@ -131,9 +131,9 @@ std::string arm_of(const Perturbation& perturbation);
 /// EnvironmentType::with_distractors() and resized().
 Scene perturbed(Scene control, const Scenario& scenario, std::optional<std::uint64_t> training_seed);
 
-/// The stream of one axis in one test scene; `training_seed`: as in SceneRequest.
+/// The stream of one axis in one test scene, after so many of its steps; `training_seed`: as in SceneRequest.
 RandomStream perturbation_stream(const std::string& axis, const Scene& scene,
-                                 std::optional<std::uint64_t> training_seed);
+                                 std::optional<std::uint64_t> training_seed, int step = 0);
 
 }  // namespace lgabench
 

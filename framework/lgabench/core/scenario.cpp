@@ -252,8 +252,9 @@ Scenario read_scenario(const Json& json, const std::string& file) {
   s.second = task.second;
   const std::vector<std::string> own = environment.scenario_members(task), of_scenes = environment.scene_members(task);
   std::vector<std::string> members = own;
-  members.insert(members.end(), {"id", "environment", "task", "feature_space", "commands", "answers_of", "answers",
-                                 "train", "tests", "played", "questions", "axes", "truth", "printed", "note"});
+  members.insert(members.end(),
+                 {"id", "environment", "task", "feature_space", "commands", "answers_of", "answers", "train", "tests",
+                  "played", "questions", "may_stop", "axes", "truth", "printed", "note"});
   reader.only(members);
   if (reader.has("printed")) {
     std::vector<std::string> replaced = own;
@@ -274,6 +275,8 @@ Scenario read_scenario(const Json& json, const std::string& file) {
     s.questions = Scenario::Questions{static_cast<int>(questions.at("scenes").integer(1, most_scenes)),
                                       read_probability(questions.at("errs"))};
   }
+  if (reader.has("may_stop")) s.may_stop = reader.at("may_stop").boolean();
+  if (s.may_stop && task.most_steps == 1) reader.at("may_stop").fail("a task of several steps");
   s.axes = read_plugin_axes(reader);
   for (const JsonReader& arm : reader.at("tests").elements()) {
     s.tests.push_back(

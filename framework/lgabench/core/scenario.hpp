@@ -76,8 +76,9 @@ struct Scenario {
     double errs = 0;
   };
   std::optional<Questions> questions = {};
-  PluginAxes axes;  // of plugins, that arms have
-  Json json;        // as read, with what the plugins' axes declare: goes into a cell's configuration whole
+  bool may_stop = false;  // whether an actor may say that nothing is left to do (Environment::step())
+  PluginAxes axes;        // of plugins, that arms have
+  Json json;              // as read, with what the plugins' axes declare: goes into a cell's configuration whole
 
   /// Command number `i` as a method is given it. @pre 0 <= i < commands.size()
   Command command(int i) const { return {commands[static_cast<std::size_t>(i)].utterance, task, second}; }

@@ -33,24 +33,28 @@ const Pixel& nearest_to(Vec2 point, const std::vector<Pixel>& pixels) {
 
 }  // namespace
 
-std::optional<std::uint8_t> taken(const Demonstration& demonstration, const ActionSpace& actions) {
-  const Step& first = demonstration.steps.at(0);
-  const std::vector<Pixel> pixels = takeable(first.observation);
-  if (pixels.empty() || actions.places.empty()) return std::nullopt;
+std::optional<std::uint8_t> taken(const Step& step, const ActionSpace& actions) {
+  if (step.label.empty() || actions.places.empty()) return std::nullopt;
+  const std::vector<Pixel> pixels = takeable(step.observation);
+  if (pixels.empty()) return std::nullopt;
   const auto place = [&](std::size_t i) {
-    return in_picture(actions, actions.places[i], first.label, first.observation.size);
+    return in_picture(actions, actions.places[i], step.label, step.observation.size);
   };
   const Vec2 from = place(0);
   const Pixel& nearest = nearest_to(from, pixels);
   if (norm(nearest.middle - from) <= on_it || actions.places.size() < 2) return nearest.id;
   const Vec2 way = place(1) - from;
   const int steps = static_cast<int>(std::ceil(norm(way)));
-  for (int step = 1; step <= steps; ++step) {
-    const Vec2 point = from + static_cast<double>(step) / steps * way;
+  for (int i = 1; i <= steps; ++i) {
+    const Vec2 point = from + static_cast<double>(i) / steps * way;
     const Pixel& met = nearest_to(point, pixels);
     if (norm(met.middle - point) <= 1) return met.id;
   }
   return nearest.id;
+}
+
+std::optional<std::uint8_t> taken(const Demonstration& demonstration, const ActionSpace& actions) {
+  return taken(demonstration.steps.at(0), actions);
 }
 
 }  // namespace lgabench

@@ -68,9 +68,12 @@ Json build_hashes(const PluginInfo& engine, const PluginInfo* method, bool axes)
     const fs::path bin = program_directory();
     Json hashes;
     for (const char* name : {"lgabench-worker", "lgabench-method"}) hashes[name] = sha256_file(bin / name);
-    std::vector<std::string> libraries{"liblgabench_core.so", "liblgabench_learning.so"};
-    for (const std::string& id : environment_ids()) libraries.push_back(fmt::format("liblgabench_env_{}.so", id));
-    for (const std::string& name : libraries) hashes[name] = sha256_file(bin.parent_path() / "lib" / name);
+    for (const char* name : {"liblgabench_core.so", "liblgabench_learning.so"})
+      hashes[name] = sha256_file(bin.parent_path() / "lib" / name);
+    for (const std::string& id : environment_ids()) {
+      const fs::path file = environment_file(id);
+      hashes[file.filename().string()] = sha256_file(file);
+    }
     return hashes;
   }();
   Json build = programs;

@@ -13,14 +13,14 @@ namespace lgabench {
 namespace {
 
 // One of a suite's scenarios.
-struct Named {
+struct NamedScenario {
   std::string id;            // in the suite
   std::string base;          // of the scenario that it is made from
   std::string variant = {};  // "": none
 };
 
-Named named(const Suite& suite, const std::string& id) {
-  Named found{id, id};
+NamedScenario named(const Suite& suite, const std::string& id) {
+  NamedScenario found{id, id};
   for (const auto& variant : suite.variants) {
     const std::string end = "_" + variant.first;
     if (id.size() <= end.size() || id.compare(id.size() - end.size(), end.size(), end) != 0) continue;
@@ -71,8 +71,8 @@ void update_train(Json& json, const Json& members) {
 
 // Behind the scenario's arms, or in their place, those of the suite that the design plays in this scenario: each is the
 // first one but for its members.
-void add_arms(const Suite& suite, const std::vector<SuiteArm>& arms, const Design& design, const Named& scenario,
-              Json& tests) {
+void add_arms(const Suite& suite, const std::vector<SuiteArm>& arms, const Design& design,
+              const NamedScenario& scenario, Json& tests) {
   const Json first = tests.front(), scenes = scenes_of(suite, scenario.base);
   const auto near_miss = suite.near_miss.find(scenario.base);
   if (suite.only_arms) tests = Json::array();
@@ -113,7 +113,7 @@ std::vector<std::string> suite_scenario_ids(const Suite& suite, const Design& de
 
 Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, const Design* of) {
   const Design& design = of ? *of : suite.design;
-  const Named one = named(suite, id);
+  const NamedScenario one = named(suite, id);
   const Scenario scenario = load_scenario(one.base, truth);
   if (scenario.environment->id() != suite.environment)
     throw InputError(fmt::format("{}: /scenarios: \"{}\" is a scenario of {}, expected {}", suite.file, id,

@@ -34,8 +34,9 @@ HostCommand command_of(const HostJob& job, const Confinement* confinement) {
 
 host::Layout layout_of(const HostJob& job) {
   const EnvironmentType& type = find_environment(job.environment);
-  return {type.picture_size(),
-          job.task.empty() ? type.action_space() : type.action_space_of(find_task(type, job.task))};
+  if (job.task.empty()) return {type.picture_size(), type.action_space()};
+  const TaskInfo& task = find_task(type, job.task);
+  return {type.picture_size(), type.action_space_of(task), type.state_of(task), job.may_stop};
 }
 
 Json plugin_json(const PluginInfo& plugin) {

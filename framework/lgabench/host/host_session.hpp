@@ -30,7 +30,8 @@ struct HostJob {
   /// Words before the process's own, an absolute path first or none at all: it runs in the foreground
   /// (host_process.hpp).
   std::optional<std::vector<std::string>> debugger{};
-  std::string task{};  // of the environment, whose stations a method is told; "": it is told of none
+  std::string task{};     // of the environment, whose stations and state a method is told; "": it is told of none
+  bool may_stop = false;  // as in Services
 };
 
 /// Calls `tell` in all later conversations of this process: with the plugin whose process has not answered for half a

@@ -32,12 +32,14 @@ class HostedPolicy : public Policy {
                  {"instruction", host::to_json(instruction)},
                  {"instances", host::instances_json(observation)}};
     if (!observation.shadows.empty()) request["shadows"] = true;
+    request.update(host::beside_pictures(observation));
     const Frame frame = session_->call(request, "action");
     return session_->read([&] {
       const JsonReader reader(frame.header, "action");
       acted_ = true;
       seen_.reset();
       if (reader.has("seen_in_training")) seen_ = reader.at("seen_in_training").boolean();
+      if (session_->layout().may_stop && reader.has("done") && reader.at("done").boolean()) return Action();
       return host::read_action(frame.payload, session_->layout().actions.size());
     });
   }

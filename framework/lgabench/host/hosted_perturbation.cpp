@@ -37,10 +37,13 @@ Observation HostedPerturbation::answer_to(const Observation& seen, Json request)
   };
   request.update({{"type", "perceive"}, {"instances", host::instances_json(seen)}});
   const Frame frame = session_->call(request, "perceived", takes_ids);
-  return session_->read([&] {
+  Observation perceived = session_->read([&] {
     if (!ids) throw InputError("\"perceived\", expected \"ids\" before it");
     return host::read_perceived(*ids, frame, session_->layout().picture);
   });
+  perceived.state = seen.state;  // it was told neither
+  perceived.brought = seen.brought;
+  return perceived;
 }
 
 std::vector<std::string> HostedPerturbation::refused_calls() const { return session_->refused_calls(); }

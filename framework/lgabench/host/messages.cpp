@@ -254,8 +254,11 @@ Action read_action(const std::string& bytes, std::size_t numbers) {
 }
 
 Json to_json(const Layout& layout) {
-  return {{"observation", {{"rows", layout.picture.rows}, {"columns", layout.picture.columns}, {"channels", 3}}},
-          {"action", to_json(layout.actions)}};
+  Json json{{"observation", {{"rows", layout.picture.rows}, {"columns", layout.picture.columns}, {"channels", 3}}},
+            {"action", to_json(layout.actions)}};
+  if (!layout.state.empty()) json["observation"]["state"] = lgabench::to_json(layout.state);
+  if (layout.may_stop) json["may_stop"] = true;
+  return json;
 }
 
 PictureSize read_picture_size(const JsonReader& hello) {
@@ -267,7 +270,31 @@ PictureSize read_picture_size(const JsonReader& hello) {
 }
 
 Layout read_layout(const JsonReader& hello) {
-  return {read_picture_size(hello), read_action_space(hello.at("action"))};
+  Layout layout{read_picture_size(hello), read_action_space(hello.at("action"))};
+  const JsonReader observation = hello.at("observation");
+  if (observation.has("state")) layout.state = read_numbers(observation.at("state"));
+  layout.may_stop = hello.has("may_stop") && hello.at("may_stop").boolean();
+  return layout;
+}
+
+Json beside_pictures(const Observation& observation) {
+  Json json = Json::object();
+  if (!observation.state.empty()) json["state"] = observation.state;
+  for (const Named& one : observation.brought)
+    json["brought"].push_back({{"object_type", one.object_type}, {"texture", one.texture}});
+  return json;
+}
+
+void read_beside_pictures(const JsonReader& frame, const Layout& layout, Observation& observation) {
+  observation.state.clear();
+  observation.brought.clear();
+  if (frame.has("state"))
+    for (const JsonReader& number : frame.at("state").elements()) observation.state.push_back(number.number());
+  if (observation.state.size() != layout.state.size())
+    frame.fail(fmt::format("a \"state\" of {} numbers", layout.state.size()));
+  if (frame.has("brought"))
+    for (const JsonReader& one : frame.at("brought").elements())
+      observation.brought.push_back({one.at("object_type").string(), one.at("texture").string()});
 }
 
 Frame ids_frame(const Observation& perceived) {

@@ -77,6 +77,8 @@ Action read_action(const std::string& bytes, std::size_t numbers);
 struct Layout {
   PictureSize picture;
   ActionSpace actions;
+  std::vector<StateNumber> state = {};
+  bool may_stop = false;  // as in Services
 };
 Json to_json(const Layout& layout);
 Layout read_layout(const JsonReader& hello);
@@ -112,6 +114,11 @@ inline std::size_t observation_bytes(PictureSize picture) { return 6 * picture.p
 /// memory's.
 void write(const Observation& observation, SharedMemory& memory);
 Json instances_json(const Observation& observation);
+/// What an observation has beside pictures and instances, members of a frame: "state" and "brought" where there are
+/// any.
+Json beside_pictures(const Observation& observation);
+/// Into `observation`. @throws InputError for a state of another length.
+void read_beside_pictures(const JsonReader& frame, const Layout& layout, Observation& observation);
 /// Into `observation`, whose memory it uses again. `shadows`: whether they are there.
 void read_observation(const SharedMemory& memory, PictureSize picture, const JsonReader& instances, bool shadows,
                       Observation& observation);

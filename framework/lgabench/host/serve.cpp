@@ -231,6 +231,8 @@ class Host {
                       layout_.actions,
                       [this](const Command& command) { return human_.truth(command); },
                       files_};
+    services.state = layout_.state;
+    services.may_stop = layout_.may_stop;
     if (frame.type() == "needs") {
       Json needs = host::to_json(call([&] { return method().needs(options_); }));
       needs["type"] = "needs";
@@ -275,14 +277,17 @@ class Host {
       if (!policy_) throw MethodError("asked to act before it learned");
       host::read_observation(memory_, layout_.picture, reader.at("instances"),
                              reader.has("shadows") && reader.at("shadows").boolean(), observation_);
+      host::read_beside_pictures(reader, layout_, observation_);
       const Instruction instruction = host::read_instruction(reader.at("instruction"));
       const Action action = call([&] {
         if (reader.at("reset").boolean()) policy_->reset();
         return policy_->act(observation_, instruction);
       });
-      if (action.size() != layout_.actions.size())
+      const bool done = action.empty() && layout_.may_stop;
+      if (action.size() != layout_.actions.size() && !done)
         throw MethodError(fmt::format("act() returned {} numbers, expected {}", action.size(), layout_.actions.size()));
       Json reply{{"type", "action"}};
+      if (done) reply["done"] = true;
       if (const auto seen = call([&] { return policy_->seen_in_training(); })) reply["seen_in_training"] = *seen;
       return {reply, host::to_bytes(action)};
     }

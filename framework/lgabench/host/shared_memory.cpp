@@ -148,15 +148,17 @@ DemonstrationFile pack(const Layout& layout, const std::vector<Demonstration>& d
   const auto rows = static_cast<std::size_t>(layout.picture.rows), columns = layout.picture.pixels() / rows;
   const std::size_t pixels = layout.picture.pixels();
   std::size_t steps = 0, instances = 0;
-  bool shaded = true;  // every one of them
-  Json instructions = Json::array();
+  bool shaded = true, brings = false;  // every one of them; any
+  Json instructions = Json::array(), lengths = Json::array();
   for (const Demonstration& demonstration : demonstrations) {
     instructions.push_back(to_json(demonstration.instruction));
-    steps += demonstration.steps.size();
-    for (const Step& step : demonstration.steps) {
+    lengths.push_back(demonstration.steps.size());
+    for_each_step(demonstration, [&](const Step& step) {
+      ++steps;
       instances += step.observation.instances.size();
       shaded = shaded && !step.observation.shadows.empty();
-    }
+      brings = brings || !step.observation.brought.empty();
+    });
   }
   Arrays arrays;
   const std::size_t rgb = arrays.add("rgb", "u1", 1, {steps, rows, columns, 3});
@@ -165,6 +167,9 @@ DemonstrationFile pack(const Layout& layout, const std::vector<Demonstration>& d
   const std::size_t owners = arrays.add("demonstration", "i4", 4, {steps});
   const std::size_t table = arrays.add("instances", "i4", 4, {instances, instance_numbers});
   const std::size_t shadows = shaded ? arrays.add("shadows", "u2", 2, {steps, rows, columns}) : 0;
+  const std::size_t numbers = layout.state.size();
+  const std::size_t state = numbers > 0 ? arrays.add("state", "f8", 8, {steps, numbers}) : 0;
+  const std::size_t stops = layout.may_stop ? arrays.add("stops", "u1", 1, {steps}) : 0;
   Descriptor file = memory_file(arrays.size);
 
   std::map<std::string, std::int32_t> indices;
@@ -174,29 +179,40 @@ DemonstrationFile pack(const Layout& layout, const std::vector<Demonstration>& d
     if (is_new) words.push_back(text);
     return found->second;
   };
-  std::string label_bytes;
+  std::string label_bytes, state_bytes, stop_bytes;
+  Json brought = Json::array();
   std::vector<std::int32_t> owner_of, rows_of_instances;
   std::size_t step = 0;
   for (std::size_t d = 0; d < demonstrations.size(); ++d)
-    for (const Step& s : demonstrations[d].steps) {
+    for_each_step(demonstrations[d], [&](const Step& s) {
       write_at(file, rgb + step * 3 * pixels, s.observation.rgb.data(), 3 * pixels);
       write_at(file, ids + step * pixels, s.observation.ids.data(), pixels);
       if (shaded) write_at(file, shadows + step * 2 * pixels, s.observation.shadows.data(), 2 * pixels);
-      label_bytes += to_bytes(s.label);
+      label_bytes += to_bytes(s.label.empty() ? Action(layout.actions.size()) : s.label);
+      if (s.observation.state.size() != numbers)
+        throw Error(fmt::format("state: expected {} numbers, got {}", numbers, s.observation.state.size()));
+      state_bytes += to_bytes(s.observation.state);
+      stop_bytes += static_cast<char>(s.label.empty() ? 1 : 0);
+      if (brings) brought.push_back(beside_pictures(s.observation).value("brought", Json::array()));
       owner_of.push_back(static_cast<std::int32_t>(d));
       const auto at = static_cast<std::int32_t>(step++);
       for (const Instance& i : s.observation.instances) {
         const std::int32_t type = word(i.object_type), texture = word(i.texture);
         rows_of_instances.insert(rows_of_instances.end(), {at, i.id, type, texture, i.pixels});
       }
-    }
+    });
   write_at(file, labels, label_bytes.data(), label_bytes.size());
   write_at(file, owners, owner_of.data(), owner_of.size() * sizeof owner_of[0]);
   write_at(file, table, rows_of_instances.data(), rows_of_instances.size() * sizeof rows_of_instances[0]);
+  if (numbers > 0) write_at(file, state, state_bytes.data(), state_bytes.size());
+  if (layout.may_stop) write_at(file, stops, stop_bytes.data(), stop_bytes.size());
   seal(file);
-  return {{{"instructions", std::move(instructions)}, {"words", std::move(words)}, {"arrays", std::move(arrays.json)}},
-          std::move(file),
-          arrays.size};
+  Json header{{"instructions", std::move(instructions)},
+              {"trajectory_steps", std::move(lengths)},
+              {"words", std::move(words)},
+              {"arrays", std::move(arrays.json)}};
+  if (brings) header["brought"] = std::move(brought);
+  return {std::move(header), std::move(file), arrays.size};
 }
 
 std::vector<Demonstration> unpack(const Layout& layout, const JsonReader& header, const Descriptor& file) {
@@ -220,17 +236,34 @@ std::vector<Demonstration> unpack(const Layout& layout, const JsonReader& header
   const bool shaded = arrays.has("shadows");
   const Array shadows = shaded ? array_at(arrays, "shadows", "u2", 2, size) : Array();
   if (shaded && shadows.shape != ids.shape) arrays.at("shadows").fail("an array of the shape of ids");
+  const std::size_t of_state = layout.state.size();
+  const Array state = of_state > 0 ? array_at(arrays, "state", "f8", 8, size) : Array();
+  if (of_state > 0 && state.shape != Shape{steps, of_state})
+    arrays.at("state").fail("a row of the state for each step");
+  const Array stops = layout.may_stop ? array_at(arrays, "stops", "u1", 1, size) : Array();
+  if (layout.may_stop && stops.shape != Shape{steps}) arrays.at("stops").fail("a byte for each step");
+  std::vector<JsonReader> brought;
+  if (header.has("brought")) brought = header.at("brought").elements();
+  if (!brought.empty() && brought.size() != steps) header.at("brought").fail("a list for each step");
+  const std::vector<JsonReader> trajectories = header.at("trajectory_steps").elements();
 
   std::vector<Demonstration> all;
   for (const JsonReader& instruction : header.at("instructions").elements())
     all.push_back({read_instruction(instruction), {}});
+  if (trajectories.size() != all.size()) header.at("trajectory_steps").fail("a number for each demonstration");
   std::vector<Step*> by_index;
   std::vector<std::size_t> lengths(all.size());
   for (std::size_t s = 0; s < steps; ++s)
     ++lengths.at(static_cast<std::size_t>(value_at<std::int32_t>(memory.data() + owners.offset, s)));
-  for (std::size_t d = 0; d < all.size(); ++d) all[d].steps.reserve(lengths[d]);
+  std::vector<std::size_t> own;                   // steps of each that are its episode's
+  for (std::size_t d = 0; d < all.size(); ++d) {  // rows stay where they are put
+    own.push_back(static_cast<std::size_t>(trajectories[d].integer(0, static_cast<long long>(lengths[d]))));
+    all[d].steps.reserve(own[d]);
+    all[d].recovery.reserve(lengths[d] - own[d]);
+  }
   for (std::size_t s = 0; s < steps; ++s) {
-    auto& owner = all.at(static_cast<std::size_t>(value_at<std::int32_t>(memory.data() + owners.offset, s))).steps;
+    const auto d = static_cast<std::size_t>(value_at<std::int32_t>(memory.data() + owners.offset, s));
+    std::vector<Step>& owner = all[d].steps.size() < own[d] ? all[d].steps : all[d].recovery;
     Step step;
     const std::uint8_t* const colours = memory.data() + rgb.offset + s * 3 * pixels;
     const std::uint8_t* const labelled = memory.data() + ids.offset + s * pixels;
@@ -242,7 +275,15 @@ std::vector<Demonstration> unpack(const Layout& layout, const JsonReader& header
       std::memcpy(step.observation.shadows.data(), memory.data() + shadows.offset + s * 2 * pixels, 2 * pixels);
     }
     const auto* const label = reinterpret_cast<const char*>(memory.data() + labels.offset + s * numbers * 8);
-    step.label = read_action({label, numbers * 8}, numbers);
+    if (!layout.may_stop || memory.data()[stops.offset + s] == 0)
+      step.label = read_action({label, numbers * 8}, numbers);
+    if (of_state > 0) {
+      step.observation.state.resize(of_state);
+      std::memcpy(step.observation.state.data(), memory.data() + state.offset + s * of_state * 8, of_state * 8);
+    }
+    if (!brought.empty())
+      for (const JsonReader& thing : brought[s].elements())
+        step.observation.brought.push_back({thing.at("object_type").string(), thing.at("texture").string()});
     owner.push_back(std::move(step));
     by_index.push_back(&owner.back());
   }

@@ -111,7 +111,7 @@ static void fields(AskJob& job, Fields& field) {
 
 static void fields(PictureRequest::End& end, Fields& field) {
   field("engine", end.engine);
-  field("action", end.action);
+  field("actions", end.actions);
 }
 
 static void fields(PictureRequest& request, Fields& field) {

@@ -80,10 +80,10 @@ struct PictureRequest {
   std::string scene;  // its hash, as in episodes.jsonl
   /// A goal mask is drawn of each: {"distribution", "instances": "all" or "first"}.
   std::vector<Json> selections{};
-  /// The scene is drawn after each of these, carried out from its beginning.
+  /// The scene is drawn after each of these, all actions carried out from its beginning.
   struct End {
     std::string engine;
-    Action action{};
+    std::vector<Action> actions{};  // Episode::actions()
   };
   std::vector<End> ends{};
 };

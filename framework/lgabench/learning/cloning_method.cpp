@@ -33,6 +33,7 @@ std::uint64_t hash_of(const Samples& samples, int row) {
   };
   for (const auto& picture : samples.pictures) add(picture);
   add(samples.text);
+  add(samples.state);
   return hash;
 }
 
@@ -157,7 +158,7 @@ std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& d
   PolicyInputs offered = offered_by(inputs(services.options), options);
   const PictureSize native = picture_size(demonstrations);
   PolicyInputs seen = inputs_of(options.policy, offered, native);
-  Featurizer featurizer(seen, services.actions);
+  Featurizer featurizer(seen, services.actions, services.state);
   const auto change = [&](Step& step, const Selection& selection, int row, int copy) {
     RandomStream stream(fmt::format("learning/augment/{}/{}/{}", services.seed, row, copy));
     augment(step, selection, copy, stream);
@@ -179,7 +180,7 @@ std::unique_ptr<Policy> CloningMethod::restore(const std::string& saved, Service
   PolicyInputs offered = offered_by(inputs(services.options), options);
   offered.space = own.space;
   PolicyInputs seen = inputs_of(options.policy, offered, own.native);
-  Featurizer featurizer(seen, services.actions);
+  Featurizer featurizer(seen, services.actions, services.state);
   std::unique_ptr<Learner> untrained = learner(featurizer.shape(), services);
   auto policy = std::make_unique<CloningPolicy>(own.native, std::move(offered), std::move(seen), options.policy,
                                                 std::move(featurizer), std::move(untrained));

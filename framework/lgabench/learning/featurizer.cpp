@@ -1,5 +1,7 @@
 #include <lgabench/learning/featurizer.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include <lgabench/abstraction/selection_text.hpp>
@@ -9,13 +11,13 @@ namespace lgabench {
 
 using Picture = PolicyInputs::Picture;
 
-Featurizer::Featurizer(PolicyInputs inputs, ActionSpace actions)
-    : inputs_(std::move(inputs)), actions_(std::move(actions)) {
+Featurizer::Featurizer(PolicyInputs inputs, ActionSpace actions, std::vector<StateNumber> state)
+    : inputs_(std::move(inputs)), actions_(std::move(actions)), state_(std::move(state)) {
   if (inputs_.text != PolicyInputs::Text::none) embeddings_ = std::make_shared<SentenceEmbeddings>();
 }
 
 SampleShape Featurizer::shape() const {
-  SampleShape shape{{}, inputs_.text != PolicyInputs::Text::none, actions_};
+  SampleShape shape{{}, inputs_.text != PolicyInputs::Text::none, actions_, state_};
   for (const Picture picture : inputs_.pictures)
     shape.pictures.push_back(picture == Picture::rgb ? SampleShape::Picture{inputs_.rgb_size, 3}
                                                      : SampleShape::Picture{inputs_.mask_size, 1});
@@ -24,7 +26,13 @@ SampleShape Featurizer::shape() const {
 
 Samples Featurizer::samples(const std::vector<Demonstration>& demonstrations, int copies, const Augment& augment) {
   std::size_t steps = 0;
-  for (const Demonstration& demonstration : demonstrations) steps += demonstration.steps.size();
+  const auto for_each_row = [&](const auto& call) {
+    for (const Demonstration& demonstration : demonstrations)
+      for_each_step(demonstration, [&](const Step& step) {
+        if (!step.label.empty()) call(step, demonstration.instruction);
+      });
+  };
+  for_each_row([&](const Step&, const Instruction&) { ++steps; });
   const int unaltered = static_cast<int>(steps);
   Samples samples(shape(), unaltered * (1 + copies));
   samples.unaltered = unaltered;
@@ -35,15 +43,13 @@ Samples Featurizer::samples(const std::vector<Demonstration>& demonstrations, in
                            [](double value) { return static_cast<float>(value); });
   };
   int row = 0;
-  for (const Demonstration& demonstration : demonstrations)
-    for (const Step& step : demonstration.steps) add(step, demonstration.instruction, row++);
+  for_each_row([&](const Step& step, const Instruction& instruction) { add(step, instruction, row++); });
   for (int copy = 0; copy < copies; ++copy) {
     int of = 0;
-    for (const Demonstration& demonstration : demonstrations)
-      for (Step step : demonstration.steps) {
-        augment(step, mask_selection(demonstration.instruction), of++, copy);
-        add(step, demonstration.instruction, row++);
-      }
+    for_each_row([&](Step step, const Instruction& instruction) {
+      augment(step, mask_selection(instruction), of++, copy);
+      add(step, instruction, row++);
+    });
   }
   return samples;
 }
@@ -55,11 +61,23 @@ void Featurizer::write(const Observation& observation, const Instruction& instru
     write_pictures(inputs_.prepare(observation, selection, phase), selection, samples, row);
   else
     write_pictures(observation, selection, samples, row);
+  write_state(observation, samples, row);
   if (!embeddings_) return;
   const std::vector<float>& embedding = embeddings_->of(inputs_.text == PolicyInputs::Text::utterance
                                                             ? instruction.utterance
                                                             : selection_text(instruction.selection, inputs_.space));
   std::copy(embedding.begin(), embedding.end(), samples.text.begin() + std::ptrdiff_t{row} * text_size);
+}
+
+void Featurizer::write_state(const Observation& observation, Samples& samples, int row) const {
+  if (observation.state.size() != state_.size())
+    throw InputError(
+        fmt::format("observation: state: expected {} values, got {}", state_.size(), observation.state.size()));
+  float* out = samples.state.data() + static_cast<std::size_t>(row) * state_.size();
+  for (std::size_t i = 0; i < state_.size(); ++i) {
+    const StateNumber& number = state_[i];
+    *out++ = static_cast<float>((2 * observation.state[i] - number.low - number.high) / (number.high - number.low));
+  }
 }
 
 void Featurizer::write_pictures(const Observation& observation, const Selection& selection, Samples& samples, int row) {

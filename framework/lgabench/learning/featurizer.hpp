@@ -54,29 +54,32 @@ struct PolicyInputs {
 /// One thread. Copies share the sentence embeddings.
 class Featurizer {
  public:
-  /// `actions` are Services::actions. This and write() @throw InputError for a text without a sentence embedding if the
-  /// encoder's weights are missing.
-  Featurizer(PolicyInputs inputs, ActionSpace actions);
+  /// `actions` and `state` are those of Services. This and write() @throw InputError for a text without a sentence
+  /// embedding if the encoder's weights are missing.
+  Featurizer(PolicyInputs inputs, ActionSpace actions, std::vector<StateNumber> state = {});
 
   SampleShape shape() const;
   /// Alters a copy of a step, given the Selection that its mask is made of. `row` is the number of the unaltered row
   /// that was copied; copies count from 0.
   using Augment = std::function<void(Step&, const Selection&, int row, int copy)>;
 
-  /// Makes a row with its label for each step of each demonstration, in their order. Behind them, copy by copy, come as
-  /// many rows for each copy.
+  /// Makes a row with its label for each step of each demonstration, in their order: of its episode, then of its
+  /// recovery. A step whose label says that nothing is left to do has none. Behind them, copy by copy, come as many
+  /// rows for each copy.
   Samples samples(const std::vector<Demonstration>& demonstrations, int copies = 0, const Augment& augment = {});
   /// Writes the inputs of one row; its label stays. After its first call it allocates nothing, unless `prepare` does.
   /// @throws MethodError for an utterance that `masks` lacks, InputError for a picture whose pixels do not fit its
-  /// size.
+  /// size, or a state of another length.
   void write(const Observation& observation, const Instruction& instruction, Phase phase, Samples& samples, int row);
 
  private:
   const Selection& mask_selection(const Instruction& instruction) const;
+  void write_state(const Observation& observation, Samples& samples, int row) const;
   void write_pictures(const Observation& observation, const Selection& selection, Samples& samples, int row);
 
   PolicyInputs inputs_;
   ActionSpace actions_;
+  std::vector<StateNumber> state_;
   std::shared_ptr<SentenceEmbeddings> embeddings_;  // null without a text
   std::vector<std::uint8_t> mask_;
 };

@@ -8,22 +8,28 @@ namespace lgabench {
 Head::Head(const NetworkShape& shape, Parameters& parameters, const Kernels& kernels)
     : architecture_(shape.architecture), parameters_(parameters), kernels_(kernels) {
   const bool deep = architecture_ == Architecture::released && shape.text;
-  inputs_.resize(shape.channels.size() + (shape.text ? 1 : 0));
-  const auto is_text = [&](std::size_t i) { return i == shape.channels.size(); };
-  const auto is_wide = [&](std::size_t i) { return shape.wide && !is_text(i); };
+  const std::size_t towers = shape.channels.size();
+  inputs_.resize(towers + (shape.text ? 1 : 0) + (shape.state > 0 ? 1 : 0));
+  const auto is_state = [&](std::size_t i) { return shape.state > 0 && i + 1 == inputs_.size(); };
+  const auto is_text = [&](std::size_t i) { return i == towers && !is_state(i); };
+  const auto is_wide = [&](std::size_t i) { return shape.wide && i < towers; };
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    if (deep == is_text(i) && !is_wide(i)) continue;  // the towers have one, or the text has
+    if (deep == is_text(i) && !is_wide(i) && !is_state(i)) continue;  // the towers have one, or the text has
     Input& input = inputs_[i];
-    input.own.emplace(is_wide(i) ? wide_linear : is_text(i) ? text_linear : tower_linear, parameters, kernels);
+    const LayerKind own = is_wide(i)    ? wide_linear
+                          : is_state(i) ? state_linear
+                          : is_text(i)  ? text_linear
+                                        : tower_linear;
+    input.own.emplace(own, parameters, kernels);
     input.own_bias = parameters.take(input.own->outputs());
     name({&*input.own}, is_wide(i) ? wide_features : hidden_features, input.own_bias);
   }
   std::vector<const Linear*> shares;
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    const LayerKind kind = deep         ? (is_text(i) ? text_linear : features_linear)
-                           : is_text(i) ? text_head
-                           : is_wide(i) ? wide_head
-                                        : tower_head;
+    const LayerKind kind = deep                        ? (is_text(i) ? text_linear : features_linear)
+                           : is_text(i) || is_state(i) ? text_head
+                           : is_wide(i)                ? wide_head
+                                                       : tower_head;
     shares.push_back(&inputs_[i].share.emplace(kind, parameters, kernels));
   }
   joined_bias_ = parameters.take(deep ? padded_hidden : padded_action);

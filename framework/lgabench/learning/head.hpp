@@ -21,7 +21,8 @@ class Head {
   void make_room(int rows);
 
   /// Outputs, rows x 16 of which NetworkShape::actions count, valid until the next call. Inputs are each tower's
-  /// features (rows x 160), then the text (rows x 384) if there is one; backward() reads them again.
+  /// features (rows x 160), then the text (rows x 384) if there is one, then the state (rows x 16); backward() reads
+  /// them again.
   const float* forward(const std::vector<const float*>& inputs, int rows);
   /// Leaves the parameters' gradients, given that of the outputs, and writes that of each input that is not null.
   void backward(const std::vector<const float*>& inputs, const float* gradient,

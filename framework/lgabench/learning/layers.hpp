@@ -24,8 +24,9 @@ struct Span {
 };
 
 /// Outputs of a linear layer are padded with zeros to whole vectors: 100 features to 112, 1000 to 1008, the numbers of
-/// an action to 16.
-constexpr int hidden_features = 100, padded_hidden = 112, wide_features = 1000, padded_wide = 1008, padded_action = 16;
+/// an action to 16. So is a state.
+constexpr int hidden_features = 100, padded_hidden = 112, wide_features = 1000, padded_wide = 1008, padded_action = 16,
+              padded_state = 16;
 
 /// Every layer that a network may have, in the order of `layers`.
 enum LayerKind {
@@ -40,7 +41,8 @@ enum LayerKind {
   tower_linear,
   features_linear,
   wide_linear,
-  wide_head
+  wide_head,
+  state_linear
 };
 
 constexpr Layer layers[] = {{36, 72, 1, 8, 4, 32},
@@ -54,7 +56,8 @@ constexpr Layer layers[] = {{36, 72, 1, 8, 4, 32},
                             {1, 0, 160, 1, 1, padded_hidden},
                             {1, 0, padded_hidden, 1, 1, padded_hidden},
                             {1, 0, 160, 1, 1, padded_wide},
-                            {1, 0, padded_wide, 1, 1, padded_action}};
+                            {1, 0, padded_wide, 1, 1, padded_action},
+                            {1, 0, padded_state, 1, 1, padded_hidden}};
 constexpr int most_channels = 64;  // of a convolution's output
 
 /// Weights as Kernels::input_gradient() takes them: kernel x out_channels x (kernel x channels).

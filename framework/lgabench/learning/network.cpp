@@ -14,6 +14,7 @@ namespace lgabench {
 
 SampleShape NetworkShape::samples() const {
   SampleShape shape{{}, text};
+  shape.state.resize(size(state));
   shape.actions.numbers.resize(size(actions));
   for (const int of_picture : channels) shape.pictures.push_back({input_size, of_picture});
   return shape;
@@ -24,7 +25,7 @@ struct Network::Impl {
   const Kernels& kernels;
   const bool finds_usual;
   const bool has_text;
-  const int actions;
+  const int actions, state_numbers;
   Parameters parameters;
   std::vector<Tower> towers;
   std::optional<Head> head;
@@ -32,10 +33,10 @@ struct Network::Impl {
   std::vector<std::vector<float>> usual, nothing;
   // Room for one batch:
   int capacity = 0;
-  Numbers text, output_gradients;
+  Numbers text, state, output_gradients;
   std::vector<std::vector<const float*>> pictures;  // of each tower, for each row
-  std::vector<const float*> features;               // of each tower; the text
-  std::vector<float*> feature_gradients;            // of each tower; null for the text
+  std::vector<const float*> features;               // of each tower; the text; the state
+  std::vector<float*> feature_gradients;            // of each tower; null for the others
   std::vector<int> every_row;                       // of predict()
   std::vector<float> predicted;
 
@@ -45,11 +46,15 @@ struct Network::Impl {
         finds_usual(shape.architecture != Architecture::plain),
         has_text(shape.text),
         actions(shape.actions),
+        state_numbers(shape.state),
         parameters(seed),
         pictures(shape.channels.size()) {
     if (actions < 1 || actions > padded_action)
       throw InputError(
           fmt::format("actions: expected 1 to {} numbers for the network, got {}", padded_action, actions));
+    if (state_numbers > padded_state)
+      throw InputError(
+          fmt::format("state: expected {} numbers at most for the network, got {}", padded_state, state_numbers));
     for (const int channels : shape.channels) {
       towers.emplace_back(channels, shape.architecture, parameters, kernels);
       usual.emplace_back(size(channels * input_pixels));
@@ -57,7 +62,7 @@ struct Network::Impl {
     nothing = usual;
     head.emplace(shape, parameters, kernels);
     parameters.finish();
-    features.resize(towers.size() + (has_text ? 1 : 0));
+    features.resize(towers.size() + (has_text ? 1 : 0) + (state_numbers > 0 ? 1 : 0));
     feature_gradients.resize(features.size());
   }
 
@@ -66,6 +71,7 @@ struct Network::Impl {
     for (Tower& tower : towers) tower.make_room(rows);
     head->make_room(rows);
     if (has_text) text = Numbers(size(rows * text_size));
+    if (state_numbers > 0) state = Numbers(size(rows * padded_state));
     output_gradients = Numbers(size(rows * padded_action));
     for (auto& of_tower : pictures) of_tower.reserve(size(rows));
     capacity = rows;
@@ -83,7 +89,12 @@ struct Network::Impl {
     if (has_text) {
       for (int row = 0; row < rows; ++row)
         std::copy_n(samples.text.data() + size(batch[size(row)]) * text_size, text_size, text + row * text_size);
-      features.back() = text;
+      features[towers.size()] = text;
+    }
+    if (state_numbers > 0) {
+      for (int row = 0; row < rows; ++row)
+        std::copy_n(samples.state.data() + batch[size(row)] * state_numbers, state_numbers, state + row * padded_state);
+      features.back() = state;
     }
     return head->forward(features, rows);
   }

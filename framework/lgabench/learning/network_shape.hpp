@@ -22,6 +22,7 @@ struct NetworkShape {
   Architecture architecture = Architecture::text;
   int actions = 12;   // numbers of an action, at most 16
   bool wide = false;  // of plain ones: each tower's features pass a linear layer to 1000 first, without an activation
+  int state = 0;      // numbers of a state, at most 16: through a linear layer to 100, beside the text
 
   /// What its samples hold.
   SampleShape samples() const;

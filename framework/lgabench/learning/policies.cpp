@@ -14,7 +14,8 @@ using Picture = PolicyInputs::Picture;
 
 std::unique_ptr<Learner> regression(const SampleShape& rows, const Json& options, std::uint64_t seed) {
   const auto [architecture, spot, loss] = read_network_options(options);
-  NetworkShape shape{{}, rows.text, architecture, static_cast<int>(rows.actions.size()), spot};
+  NetworkShape shape{
+      {}, rows.text, architecture, static_cast<int>(rows.actions.size()), spot, static_cast<int>(rows.state.size())};
   for (const SampleShape::Picture& picture : rows.pictures) {
     if (!(picture.size == input_size)) throw InputError("inputs: expected pictures of 36 x 72 for policy=regression");
     shape.channels.push_back(picture.channels);

@@ -10,6 +10,7 @@ Samples::Samples(SampleShape of_a_row, int count) : shape(std::move(of_a_row)), 
   for (const SampleShape::Picture& picture : shape.pictures)
     pictures.emplace_back(n * static_cast<std::size_t>(picture.numbers()));
   if (shape.text) text.resize(n * text_size);
+  state.resize(n * shape.state.size());
   labels.resize(n * shape.actions.size());
 }
 

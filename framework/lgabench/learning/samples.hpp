@@ -20,6 +20,7 @@ struct SampleShape {
   std::vector<Picture> pictures;
   bool text = false;
   ActionSpace actions{};
+  std::vector<StateNumber> state{};  // what an observation says beside its picture
 };
 
 /// Rows of input and label, each array row-major. Copying copies all numbers.
@@ -43,6 +44,7 @@ struct Samples {
   int unaltered;  // how many rows, the first ones, are demonstrations as they are; the others are altered copies
   std::vector<std::vector<float>> pictures;  // each: rows x the picture's rows x columns x channels
   std::vector<float> text;                   // rows x 384, or empty
+  std::vector<float> state;                  // rows x numbers of the state, each within -1 and 1
   std::vector<float> labels;                 // rows x numbers of an action: the oracle's, as_stored()
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/fields.hpp>
 
 namespace lgabench {
@@ -39,9 +40,30 @@ void fields(Episode& e, Fields& field) {
     e.action = read_action(reader->at("action"));
   else
     field("action", e.action, or_null(e.action.empty()));
+  field("then", e.then, when(!e.then.empty()));
+  if (reader && !e.then.empty() && (e.action.empty() || contains(e.then, Action())))
+    reader->at("then").fail("the numbers of actions, and of an \"action\" before them");
+  field("done", e.done, when(e.done));
   field("input_seen", e.input_seen, when(e.input_seen.has_value()));
   field("told", e.told, when(e.told.has_value()));
   field("took", e.took, one_of(takings, when(!e.took.empty()), "{}"));
+}
+
+std::vector<Action> Episode::actions() const {
+  std::vector<Action> all;
+  if (!action.empty()) all.push_back(action);
+  all.insert(all.end(), then.begin(), then.end());
+  if (done) all.emplace_back();
+  return all;
+}
+
+void Episode::add(Action next) {
+  if (next.empty())
+    done = true;
+  else if (action.empty())
+    action = std::move(next);
+  else
+    then.push_back(std::move(next));
 }
 
 Json to_json(const Episode& episode) { return json_of(episode); }

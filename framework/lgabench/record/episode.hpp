@@ -24,16 +24,22 @@ struct Episode {
   int index = 0, command = 0;  // within the arm; of the scenario's commands
   std::string scene;           // its hash, 16 hexadecimal digits
   Failure failure = failure::none;
-  Action action{};                   // what was carried out; empty where the actor gave none
+  Action action{};                   // what was carried out first; empty where the actor gave none
   std::string attribution{};         // of a failure; "" where it is not known
   std::optional<bool> input_seen{};  // Policy::seen_in_training() of the action
   std::string took{};                // one of takings; "" where no axis gives other commands
   std::optional<int> told{};         // there, the command whose words were given
   std::uint8_t taken = 0;            // StepResult::taken. Not on disk
   std::string error{};               // of a method_error: what was thrown. Not on disk: its words may hold an address
+  std::vector<Action> then{};        // what was carried out after it, in episodes of several steps
+  bool done = false;                 // whether the actor then said that nothing is left to do
 
   bool success() const { return failure == failure::none; }
   int given() const { return told.value_or(command); }  // the command whose words were given
+  /// All that the actor did, in order: an empty one, the last, says that nothing is left to do.
+  std::vector<Action> actions() const;
+  /// The next of these.
+  void add(Action next);
 };
 
 Json to_json(const Episode& episode);

@@ -27,6 +27,7 @@ void pair_cells(const CellResult& a, const CellResult& b, EngineAgreement& out, 
     const std::vector<Episode>&first = a.episodes.at(arm), &second = found->second;
     for (std::size_t i = 0; i < std::min(first.size(), second.size()); ++i) {
       if (first[i].scene != second[i].scene || (first[i].action.empty() && second[i].action.empty())) continue;
+      if (!first[i].then.empty() || !second[i].then.empty()) continue;  // no one action decides such an episode
       if (!same_action(first[i], second[i])) {
         ++row.other_actions;
         continue;

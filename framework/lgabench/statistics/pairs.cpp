@@ -9,7 +9,8 @@
 namespace lgabench::statistics {
 
 bool same_action(const Episode& first, const Episode& second) {
-  return !first.action.empty() && first.action == second.action;
+  return (!first.action.empty() || first.done) && first.action == second.action && first.then == second.then &&
+         first.done == second.done;
 }
 
 void EpisodePairs::add(const Episode& a, const Episode& b) {

@@ -44,13 +44,15 @@ Json read_line(const char* what) {
   return parse_json(line, what);
 }
 
-Observation read_observation(PictureSize size, const JsonReader& instances) {
+Observation read_observation(const host::Layout& layout, const JsonReader& request) {
+  const PictureSize size = layout.picture;
   host::SharedMemory pixels(host::observation_bytes(size));
   const std::size_t sent = 4 * size.pixels();  // rgb and ids
   if (!std::cin.read(reinterpret_cast<char*>(pixels.data()), static_cast<std::streamsize>(sent)))
     throw InputError("act: expected the pictures behind the request");
   Observation seen;
-  host::read_observation(pixels, size, instances, false, seen);
+  host::read_observation(pixels, size, request.at("instances"), false, seen);
+  host::read_beside_pictures(request, layout, seen);
   return seen;
 }
 
@@ -91,17 +93,20 @@ void act_on(const JsonReader& job, const Answers& answers) {
                true,
                runs_below(plugin.file.parent_path())};
   host.hidden.push_back(directory.parent_path().parent_path());
-  host.task = cell.scenario->at("task").get<std::string>();
+  const Scenario scenario = read_scenario(*cell.scenario, (directory / cell_file::configuration).string());
+  host.task = scenario.task;
+  host.may_stop = scenario.may_stop;
   HostedMethod method(host);
   const std::unique_ptr<Policy> policy = restored(method, kept, directory / cell_file::policy);
-  const PictureSize size = find_environment(cell.environment).picture_size();
-  answers.send({{"rows", size.rows}, {"columns", size.columns}});
+  const host::Layout layout{scenario.environment->picture_size(), actions_of(scenario), state_of(scenario),
+                            scenario.may_stop};
+  answers.send({{"rows", layout.picture.rows}, {"columns", layout.picture.columns}});
   for (Json request = read_line("act"); !request.is_null(); request = read_line("act")) {
     const JsonReader reader(request, "act");
-    const Observation seen = read_observation(size, reader.at("instances"));
+    const Observation seen = read_observation(layout, reader);
     const Instruction instruction = host::read_instruction(reader.at("instruction"));
     try {
-      policy->reset();
+      if (reader.at("reset").boolean()) policy->reset();
       answers.send({{"action", guarded(plugin.id, [&] { return policy->act(seen, instruction); })}});
     } catch (const MethodGone&) {
       throw;

@@ -84,12 +84,13 @@ void write(const DemosArguments& a) {
 void inspect(const std::string& file) {
   const auto demonstrations = read_demonstrations(read_file(file), file);
   for (std::size_t i = 0; i < demonstrations.size(); ++i) {
-    const auto& [instruction, steps] = demonstrations[i];
+    const auto& [instruction, steps, recovery] = demonstrations[i];
     std::vector<std::string> objects;
     for (const Instance& instance : steps.front().observation.instances)
       objects.push_back(instance.texture + " " + instance.object_type);
-    to_stdout("demo_{}: {} step{}; \"{}\"; {}; action {:.3f}\n", i, steps.size(), steps.size() == 1 ? "" : "s",
-              instruction.utterance, fmt::join(objects, ", "), fmt::join(steps.front().label, " "));
+    const std::size_t count = steps.size() + recovery.size();
+    to_stdout("demo_{}: {} step{}; \"{}\"; {}; action {:.3f}\n", i, count, count == 1 ? "" : "s", instruction.utterance,
+              fmt::join(objects, ", "), fmt::join(steps.front().label, " "));
   }
 }
 

@@ -158,7 +158,8 @@ Observation drawn_in_arm(const Scenario& scenario, const Scene& scene) {
   const EnvironmentType& environment = *scenario.environment;
   Observation seen = environment.draw(scene, view_of(scenario, scene));
   if (scene.arm != "train" && scenario.arm(scene.arm).perturbation)
-    if (const Perception perception = perception_of(scenario, scenario.arm(scene.arm))) seen = perception(seen, scene);
+    if (const Perception perception = perception_of(scenario, scenario.arm(scene.arm)))
+      seen = perception(seen, scene, 0);
   return seen;
 }
 

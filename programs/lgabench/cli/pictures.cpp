@@ -77,7 +77,7 @@ class Pictures {
         is_of_plugin(arm) ? nullptr : perception_of(played.scenario, arm, played.cell.scenes_of_seed());
     const View view = view_of(played.scenario, scene, played.cell.scenes_of_seed());
     Observation perceived = view == View() ? seen : type.draw(scene, view);
-    if (perception) perceived = perception(perceived, scene);
+    if (perception) perceived = perception(perceived, scene, 0);
     Json masks = Json::array();
     for (const Json& one : request.selections) {
       const JsonReader selection(one, "selection");
@@ -96,8 +96,7 @@ class Pictures {
     }
     Json ends = Json::array();
     for (const PictureRequest::End& end : request.ends) {
-      const std::optional<std::string> after = after_action(played.scenario, scene, end);
-      ends.push_back(!after ? Json() : Json(*after == picture ? "" : *after));
+      ends.push_back(after_actions(played.scenario, scene, end, picture));
     }
     Environment* const environment = scenes_.on(played.cell.engine, played.scenario);
     if (environment) environment->reset(scene);
@@ -118,17 +117,25 @@ class Pictures {
     return png(seen.size, [&](std::size_t i) { return id_colour(seen.ids[i]); });
   }
 
-  // None where the engine is not there, or the action is none of this environment's.
-  std::optional<std::string> after_action(const Scenario& scenario, const Scene& scene,
-                                          const PictureRequest::End& end) {
+  // The picture after the action, "" where nothing moved; of several steps a list. Null where the engine is not there,
+  // or the actions are none of this environment's.
+  Json after_actions(const Scenario& scenario, const Scene& scene, const PictureRequest::End& end,
+                     const std::string& before) {
     Environment* const environment = scenes_.on(end.engine, scenario);
-    if (!environment) return std::nullopt;
+    if (!environment) return nullptr;
     environment->reset(scene);
+    Json pictures = Json::array();
     try {
-      return picture_of(environment->step(end.action).observation);
+      carry_out(*environment, scene, end.actions, [&](const StepResult& result) {
+        const std::string after = picture_of(result.observation);
+        pictures.push_back(after == before ? "" : after);
+      });
     } catch (const MethodError&) {
-      return std::nullopt;
+      return nullptr;
+    } catch (const InputError&) {
+      return nullptr;
     }
+    return pictures.size() == 1 ? pictures[0] : pictures;
   }
 
   PlayedScenes scenes_;

@@ -39,6 +39,8 @@ Scene PlayedScenes::scene(const Played& played, const std::string& arm, int inde
 
 Environment* PlayedScenes::on(const std::string& engine, const Scenario& scenario) {
   std::string world = scenario.space.id + scenario.environment->world_of(scenario);
+  if (find_task(*scenario.environment, scenario.task).most_steps > 1)
+    world += fmt::format(" {}{}", scenario.task, scenario.may_stop ? ", may stop" : "");
   for (const BodyVariant& body : body_variants(scenario))  // all of which one world holds, as it did in the cell
     world += fmt::format(" {},{},{}", body.scale, body.friction, body.mass);
   std::unique_ptr<Environment>& made = environments_[{engine, scenario.environment->id(), std::move(world)}];
@@ -49,6 +51,19 @@ Environment* PlayedScenes::on(const std::string& engine, const Scenario& scenari
     return nullptr;
   }
   return made.get();
+}
+
+StepResult carry_out(Environment& environment, const Scene& scene, const std::vector<Action>& actions,
+                     const std::function<void(const StepResult&)>& after) {
+  StepResult result;
+  for (std::size_t i = 0; i < actions.size(); ++i) {
+    result = environment.step(actions[i]);
+    if (after) after(result);
+    if ((result.terminated || result.truncated) && i + 1 < actions.size())
+      throw InputError(fmt::format("scene {} of {}, step {}: the episode is over here ({}), recorded with {} steps",
+                                   scene.index, scene.arm, i + 1, result.failure, actions.size()));
+  }
+  return result;
 }
 
 std::function<bool(int column, int row)> target_pixels(const Scene& scene, const Observation& seen) {

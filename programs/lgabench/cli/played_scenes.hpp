@@ -42,6 +42,12 @@ class PlayedScenes {
   std::map<std::string, std::unique_ptr<Played>> cells_;  // by file
 };
 
+/// Carries out an episode's actions (Episode::actions()) from the scene's beginning, which is in `environment`; `after`
+/// each. Returns what the last led to. @throws InputError, with scene and step, where the episode is over before its
+/// last action: another environment played it.
+StepResult carry_out(Environment& environment, const Scene& scene, const std::vector<Action>& actions,
+                     const std::function<void(const StepResult&)>& after = {});
+
 /// Whether a target is in view at a pixel of the picture that a page shows (page_step()); false outside of it. Holds
 /// `seen`.
 std::function<bool(int column, int row)> target_pixels(const Scene& scene, const Observation& seen);

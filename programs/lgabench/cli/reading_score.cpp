@@ -238,7 +238,7 @@ void print_reading_scores(const Suite& suite, Truth truth, const ReadingArgument
           for (int i = 0; i < a.scenes; ++i) {
             const Scene scene = test_scene(scenario, suite.design.layouts.front(), arm.id, suite.design.scene_seed, i);
             Observation seen = environment.draw(scene, view_of(scenario, scene));
-            const Observation shown = perceived ? perceived(seen, scene) : seen;
+            const Observation shown = perceived ? perceived(seen, scene, 0) : seen;
             Observation there = read ? read(shown, scene) : shown;
             if (by_model) there.instances = unnamed(there);
             const auto kept =

@@ -9,6 +9,7 @@
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/gif.hpp>
+#include <lgabench/cli/played_scenes.hpp>
 #include <lgabench/cli/watched_world.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
@@ -81,7 +82,7 @@ Recorded recorded(const fs::path& run, const std::string& named) {
   for (const Json& line : parse_json_lines(read_file(file, Links::refused), file)) {
     const Episode episode = read_episode(JsonReader(line, file));
     if (episode.arm != arm || episode.index != *index) continue;
-    if (episode.action.empty())
+    if (episode.actions().empty())
       throw InputError(fmt::format("replay: {} ended without an action: {}", named, episode.failure));
     return {cell, scenario, episode, selection_of(directory, scenario, episode.given())};
   }
@@ -114,13 +115,15 @@ void draw(const EnvironmentType& environment, const Tool& tool, int zoom, Pictur
   }
 }
 
-// Eight of the frames, first and last among them, below each other in two columns.
-Picture filmstrip(const std::vector<Picture>& frames) {
-  constexpr int count = 8, across = 2, gutter = 8;
+// Eight of the frames, or one for each of several steps, first and last among them, below each other in two columns.
+Picture filmstrip(const std::vector<Picture>& frames, std::size_t steps) {
+  constexpr int across = 2, gutter = 8;
+  const int count = steps == 1 ? 8 : static_cast<int>(steps) + 1;
   const int width = frames.front().width(), height = frames.front().height();
-  Picture strip(across * (width + gutter) - gutter, count / across * (height + gutter) - gutter);
+  Picture strip(across * (width + gutter) - gutter, (count + 1) / across * (height + gutter) - gutter);
   for (int i = 0; i < count; ++i) {
-    const Picture& frame = frames[static_cast<std::size_t>(i) * (frames.size() - 1) / (count - 1)];
+    const Picture& frame =
+        frames[static_cast<std::size_t>(i) * (frames.size() - 1) / static_cast<std::size_t>(count - 1)];
     strip.paste(i % across * (width + gutter), i / across * (height + gutter), width, height, 1,
                 [&](int column, int row) { return frame.at(column, row); });
   }
@@ -137,6 +140,7 @@ struct Played {
   Picture input;  // what the policy sees of the scene
   std::vector<Picture> frames;
   StepResult end;
+  std::size_t steps;
 };
 
 Played play(const Catalogue& catalogue, const Recorded& recorded, int zoom) {
@@ -167,9 +171,9 @@ Played play(const Catalogue& catalogue, const Recorded& recorded, int zoom) {
   const Observation first = environment->reset(scene);
   add(first, std::nullopt);
   const Picture input = enlarged(first, selection ? goal_mask(first, *selection) : std::vector<std::uint8_t>());
-  StepResult end = environment->step(episode.action);
-  add(end.observation, std::nullopt);
-  return {input, frames, std::move(end)};
+  StepResult end = carry_out(*environment, scene, episode.actions(),
+                             [&](const StepResult& result) { add(result.observation, std::nullopt); });
+  return {input, frames, std::move(end), episode.actions().size()};
 }
 
 // From left to right. @pre All of one height.
@@ -200,11 +204,11 @@ void replay(const ReplayArguments& a) {
     all.push_back(play(catalogue, episode, several ? 2 : 3));
     if (all.back().input.height() != all.front().input.height())
       throw InputError("replay: expected episodes of one environment");
-    const auto& [input, frames, end] = all.back();
+    const auto& [input, frames, end, steps] = all.back();
     longest = std::max(longest, frames.size());
     said += fmt::format(
-        "{}{}; {} {}", said.empty() ? "" : " | ", several ? episode.cell.method.name : "",
-        end.is_success ? "success" : end.failure,
+        "{}{}; {}{} {}", said.empty() ? "" : " | ", several ? episode.cell.method.name : "",
+        steps == 1 ? "" : fmt::format("{} steps, ", steps), end.is_success ? "success" : end.failure,
         end.failure == episode.episode.failure ? "as recorded" : "here, recorded as " + episode.episode.failure);
   }
 
@@ -217,9 +221,9 @@ void replay(const ReplayArguments& a) {
   for (std::size_t i = 0; i < longest; ++i) {
     std::vector<const Picture*> now;
     for (const Played& played : all) now.push_back(&played.frames[std::min(i, played.frames.size() - 1)]);
-    frames.push_back({beside(now), i + 1 == longest ? last_s : several ? slowed_s : frame_s});
+    frames.push_back({beside(now), i + 1 == longest ? last_s : several || all.front().steps > 1 ? slowed_s : frame_s});
   }
-  write_file(a.out, ending == ".gif" ? gif(frames) : filmstrip(all.front().frames).png());
+  write_file(a.out, ending == ".gif" ? gif(frames) : filmstrip(all.front().frames, all.front().steps).png());
   to_stdout("{}: {} frames{}{}\n", a.out.string(), frames.size(), several ? "; " : "", said);
 }
 
@@ -236,7 +240,8 @@ void add_replay(CLI::App& app, int&) {
   verb.option("--out FILE", a->out, "FILE.gif for an animation, FILE.png for a film strip", required);
   add_plugin_path(verb, a->plugin_path);
   verb->footer(
-      "replay carries out the recorded action on the recorded engine, without the method. Pink marks the suction cup's "
+      "replay carries out the recorded actions on the recorded engine, without the method. Pink marks the suction "
+      "cup's "
       "hold or the spatula. Several episodes are slowed down.\nExample: lgabench replay runs/q1 752bdc8e/test/3 "
       "--out "
       "episode.gif");

@@ -35,10 +35,21 @@ bool is_within(const ActionDistance& distance, const PoseTolerance& tolerance) {
 // The environment's task. @throws InputError where the environment does not compare actions by pose
 const TaskInfo& task_judged_by_pose(const EnvironmentType& type, const std::string& task) {
   const TaskInfo& of = find_task(type, task);
+  if (of.most_steps > 1)
+    throw InputError(fmt::format("--judge pose: an episode of {} has several steps: no one action decides it", task));
   const Action any(type.action_space().size(), 1);
   if (!type.distance(of, any, any))
     throw InputError(fmt::format("--judge pose: {} does not compare actions by pose", type.id()));
   return of;
+}
+
+// Other limits judge the end that an action leads to; within an episode of several steps they would have ended another.
+void expect_one_step(const EnvironmentType& type, const std::string& task) {
+  if (find_task(type, task).most_steps > 1)
+    throw InputError(
+        fmt::format("rescore: an episode of {} has several steps: with other limits it would have ended at "
+                    "another one",
+                    task));
 }
 
 struct RescoreArguments {
@@ -66,9 +77,10 @@ Rescored not_judged(std::string why) { return {{}, {}, std::move(why)}; }
 // processor plays it.
 Rescored by_physics(Environment& environment, const Scene& scene, const Episode& episode, const JudgeLimits& limits) {
   environment.reset(scene);
-  const StepResult end = environment.step(episode.action);
+  const StepResult end = carry_out(environment, scene, episode.actions());
   if (end.failure != episode.failure)
     return not_judged(fmt::format("ends as {} here, recorded as {}", end.failure, episode.failure));
+  if (environment.most_steps() > 1) return {end.failure};
   const Rejudged again = environment.judged_again(limits);
   return {again.failure, again.distance_m};
 }
@@ -200,6 +212,7 @@ int rescore(const RescoreArguments& a) {
     if (cell.failed) continue;
     const PlayedScenes::Played& played = scenes.cell((a.run / "cells" / cell.key / cell_file::configuration).string());
     if (a.judge == "pose") task_judged_by_pose(*played.scenario.environment, played.scenario.task);
+    if (a.limits.position_m || a.limits.angle_deg) expect_one_step(*played.scenario.environment, played.scenario.task);
     for (const std::string& arm : cell.arms) {
       const auto is_row = [&](const ByRow& one) {
         return one.row == cell.method && one.arm == arm && one.demonstrations == cell.demonstrations;

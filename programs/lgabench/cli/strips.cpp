@@ -31,7 +31,8 @@ void draw_action(Picture& picture, const std::vector<Vec2>& places) {
     picture.dot(places.front().x, places.front().y, radius, colour);
 }
 
-// Left the scene, its targets outlined and the action drawn; right how it ended. @throws InputError without the engine.
+// Left the scene, its targets outlined and the first action drawn; right how it ended. @throws InputError without the
+// engine.
 std::string strip(PlayedScenes& scenes, const PictureRequest& request, std::size_t most_bytes) {
   const PlayedScenes::Played& played = scenes.cell(request.cell.string());
   const Scene scene = PlayedScenes::scene(played, request.arm, request.index, request.scene);
@@ -53,10 +54,11 @@ std::string strip(PlayedScenes& scenes, const PictureRequest& request, std::size
     return is_edge ? yellow : pixel_colour(before, pixel(x, y));
   });
   std::vector<Vec2> places;
-  for (const PicturePlace& place : space.places)
-    places.push_back(1. / step * in_picture(space, place, end.action, before.size));
+  if (const Action& first = end.actions.at(0); !first.empty())
+    for (const PicturePlace& place : space.places)
+      places.push_back(1. / step * in_picture(space, place, first, before.size));
   draw_action(picture, places);
-  const Observation after = environment->step(end.action).observation;
+  const Observation after = carry_out(*environment, scene, end.actions).observation;
   picture.paste(columns + between, 0, columns, rows, 1, [&](int x, int y) { return pixel_colour(after, pixel(x, y)); });
   return picture.png(most_bytes);
 }
@@ -70,7 +72,7 @@ void add_strips(CLI::App& app, int&) {
   verb->footer(
       "Example: echo '[{\"cell\": \"runs/x/cells/KEY/cell.json\", \"arm\": \"test\", \"index\": 0, \"scene\": "
       "\"HASH\",\n"
-      "                \"selections\": [], \"ends\": [{\"engine\": \"mujoco\", \"action\": [...]}], \"out\": "
+      "                \"selections\": [], \"ends\": [{\"engine\": \"mujoco\", \"actions\": [[...]]}], \"out\": "
       "\"a.png\", \"most_bytes\": 18000}]' | lgabench-worker strips");
   verb->callback([] {
     PlayedScenes scenes;

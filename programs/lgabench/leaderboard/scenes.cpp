@@ -212,7 +212,7 @@ std::optional<std::vector<fs::path>> add_scenes(const fs::path& board, const Ent
                                               episode->index,
                                               episode->scene,
                                               {},
-                                              {{entry.identity.engine, episode->action}}}));
+                                              {{entry.identity.engine, episode->actions()}}}));
     requests.back()["out"] = (scratch.path / which).string();
     requests.back()["most_bytes"] = most_picture_bytes;
   }

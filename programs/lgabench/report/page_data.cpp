@@ -82,7 +82,8 @@ class PageData {
       for (const Row& row : table.rows) titles.push_back(title_of(material_.styles, table, row));
       for (const auto& [arm, title] : table.arm_titles) arms[arm] = readable(title);
     }
-    for (const auto& [scene, expert] : pictures_.oracle) oracle[scene] = places_of(expert.first, expert.second);
+    for (const auto& [scene, expert] : pictures_.oracle)
+      if (Json places = places_of(expert.first, expert.second); !places.empty()) oracle[scene] = std::move(places);
     return {{"arms", arms},
             {"failures", words_},
             {"phi", phis_.list()},
@@ -138,7 +139,8 @@ class PageData {
       hashes.push_back(e.scene);
       given.push_back(e.given());
       if (!e.action.empty() && pictures_.scenes.count(e.scene) != 0)
-        actions[std::to_string(i)] = places_of(cell.environment, e.action);
+        if (Json places = places_of(cell.environment, e.action); !places.empty())
+          actions[std::to_string(i)] = std::move(places);
       if (const auto end = pictures_.ends.find(end_key(cell, arm, i, cell.engine)); end != pictures_.ends.end())
         ends[std::to_string(i)] = end->second;
       if (const auto input = pictures_.inputs.find(episode_key(cell, arm, i)); input != pictures_.inputs.end())

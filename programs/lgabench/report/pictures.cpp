@@ -103,7 +103,7 @@ void add_ends(const RunResults& results, std::vector<Request>& requests) {
   if (all.size() > most_ends) all.resize(most_ends);
   for (const Candidate& c : all) {
     Request& request = *request_of.at(c.episode().scene);
-    request.scene.ends.push_back({c.cell->engine, c.episode().action});
+    request.scene.ends.push_back({c.cell->engine, c.episode().actions()});
     request.ends.push_back(end_key(*c.cell, *c.arm, c.index, c.cell->engine));
   }
 }
@@ -120,7 +120,7 @@ void add_disagreements(const fs::path& run, const std::vector<EngineAgreement>& 
                            static_cast<int>(d.index),
                            d.episode().scene,
                            {},
-                           {{agreement.first, d.episode().action}, {agreement.second, d.episode().action}}},
+                           {{agreement.first, d.episode().actions()}, {agreement.second, d.episode().actions()}}},
                           {},
                           {key(agreement.first), key(agreement.second)},
                           key("")});
@@ -187,7 +187,7 @@ Pictures draw_pictures(const fs::path& run, const RunResults& results, const std
       continue;
     }
     for (std::size_t i = 0; i < request.ends.size(); ++i)
-      if (const Json& png = drawn.at("ends").at(i); png.is_string()) pictures.ends[request.ends[i]] = png;
+      if (const Json& png = drawn.at("ends").at(i); !png.is_null()) pictures.ends[request.ends[i]] = png;
     if (!request.before.empty()) {
       pictures.ends[request.before] = drawn.at("picture");
       continue;

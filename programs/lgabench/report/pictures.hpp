@@ -23,7 +23,8 @@ struct Pictures {
   /// The scene's hash -> PNG in base64 of it before and after its arm's perturbation, or where that leaves colours
   /// alone of its objects' ids. None where it leaves both.
   std::map<std::string, std::pair<std::string, std::string>> perturbed;
-  std::map<std::string, std::string> ends;  // end_key -> PNG in base64; "" where nothing moved
+  std::map<std::string, Json>
+      ends;  // end_key -> PNG in base64, "" where nothing moved; of several steps a list of these
   /// What a policy read, as it said itself: its pictures, as captions and indices of `seen`; texts that it read beside
   /// them; and what of the method's inputs it did not read.
   struct Input {

@@ -50,8 +50,8 @@ PictureRow pictures_of(const Material& material, const EngineAgreement& a, const
   const auto add = [&](const std::string& engine, const std::string& caption) {
     const auto& ends = material.pictures.ends;
     auto drawn = ends.find(end_key(*d.cell, d.arm, d.index, engine));
-    if (drawn != ends.end() && drawn->second.empty()) drawn = ends.find(end_key(*d.cell, d.arm, d.index, ""));
-    if (drawn != ends.end()) row.pictures.emplace_back(caption, drawn->second);
+    if (drawn != ends.end() && drawn->second == "") drawn = ends.find(end_key(*d.cell, d.arm, d.index, ""));
+    if (drawn != ends.end() && drawn->second.is_string()) row.pictures.emplace_back(caption, drawn->second);
   };
   add("", "before");
   add(a.first, fmt::format("{}: {}", a.first, ending(d.episode().failure)));

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstring>
 #include <exception>
 #include <memory>
@@ -116,18 +117,24 @@ class Player {
     Scene scene = sampled_scene(
         *scenario_, {layout_, which.split, test ? which.arm : "train", which.seed, {}, which.own_scenes}, which.index);
     Observation seen = environment_->reset(scene);
+    perception_ = nullptr;
     if (test) {
       TestScene shown = in_its_arm(*scenario_, std::move(scene), which.own_scenes);
       if (shown.view != View()) seen = environment_->look(shown.view);
-      if (shown.perception) seen = shown.perception(seen, shown.scene);
+      perception_ = std::move(shown.perception);
       scene = std::move(shown.scene);
     }
     scene_ = std::move(scene);
-    return seen;
+    steps_ = 0;
+    return perception_ ? perception_(seen, *scene_, 0) : seen;
   }
   StepResult step(const Action& action) {
     const WorkersArithmetic arithmetic;
-    return environment_->step(action);
+    StepResult result = environment_->step(action);
+    ++steps_;
+    const bool goes_on = !result.terminated && !result.truncated;
+    if (goes_on && perception_) result.observation = perception_(result.observation, *scene_, steps_);
+    return result;
   }
   Action expert_action(std::optional<int> instance) {
     const WorkersArithmetic arithmetic;
@@ -154,15 +161,19 @@ class Player {
   const EnvironmentType* type_;
   std::unique_ptr<Environment> environment_;
   std::optional<Scene> scene_;
+  Perception perception_;  // of the scene's arm; null: none errs
+  int steps_ = 0;
 };
 
-Action numbers_of(const Numbers& action, const ActionSpace& space) {
+Action numbers_of(const Numbers& action, const ActionSpace& space, bool may_stop) {
+  if (may_stop && action.ndim() == 1 && action.shape(0) == 0) return {};
   if (action.ndim() != 1 || action.shape(0) != space.size())
     throw InputError("step: expected an action of " + std::to_string(space.size()) + " numbers");
   return {action.data(), action.data() + action.size()};
 }
 
-/// rgb, ids, [(id, object type, texture, pixels)], shadows or None, and the same table as numbers; nothing is copied.
+/// rgb, ids, [(id, object type, texture, pixels)], shadows or None, state, [(object type, texture)] of what was
+/// brought, and the first table as numbers; nothing is copied.
 nb::tuple arrays(const Player& player, Observation seen) {
   const auto rows = size(seen.size.rows), columns = size(seen.size.columns);
   const int most = most_instances_of(player.scenario());
@@ -172,9 +183,13 @@ nb::tuple arrays(const Player& player, Observation seen) {
   for (Instance& one : seen.instances)
     table.emplace_back(one.id, std::move(one.object_type), std::move(one.texture), one.pixels);
   const bool shaded = !seen.shadows.empty();
+  const std::size_t numbers = seen.state.size();
+  std::vector<std::pair<std::string, std::string>> brought;
+  for (Named& one : seen.brought) brought.emplace_back(std::move(one.object_type), std::move(one.texture));
   return nb::make_tuple(array(std::move(seen.rgb), {rows, columns, 3}), array(std::move(seen.ids), {rows, columns}),
                         nb::cast(std::move(table)),
                         shaded ? nb::cast(array(std::move(seen.shadows), {rows, columns})) : nb::none(),
+                        array(std::move(seen.state), {numbers}), nb::cast(std::move(brought)),
                         array(std::move(encoded), {size(most), 4}));
 }
 
@@ -214,14 +229,14 @@ class One {
 
   nb::tuple step(const Numbers& action) {
     const OneCall call(mutex_, "step");
-    const Action numbers = numbers_of(action, player_.type().action_space());
+    const Action numbers = numbers_of(action, player_.type().action_space(), player_.scenario().may_stop);
     StepResult result;
     {
       const nb::gil_scoped_release others_run;
       result = player_.step(numbers);
     }
     return nb::make_tuple(arrays(player_, std::move(result.observation)), result.is_success, result.failure,
-                          !result.truncated, parts(result.gaps));
+                          !result.truncated, parts(result.gaps), result.terminated, result.truncated);
   }
 
   Doubles expert_action(std::optional<int> instance) {
@@ -262,8 +277,9 @@ class Pool {
     return batch.arrays();
   }
 
-  /// -> batches, successes, failures, whether all came to rest, what success lacks; actions: a row for each of `at`.
-  nb::tuple step(const std::vector<int>& at, const Numbers& actions) {
+  /// -> batches, successes, failures, whether all came to rest, what success lacks, terminated, truncated; actions: a
+  /// row for each of `at`; done: likewise, or empty.
+  nb::tuple step(const std::vector<int>& at, const Numbers& actions, const std::vector<bool>& done) {
     const OneCall call(mutex_, "step");
     expect_own_process();
     const std::size_t n = players_.front()->type().action_space().size();
@@ -271,12 +287,16 @@ class Pool {
       throw InputError("Pool.step: expected " + std::to_string(at.size()) + " actions of " + std::to_string(n) +
                        " numbers");
     Batch batch(*players_.front(), at.size());
-    std::vector<std::uint8_t> successes(at.size()), rests(at.size());
+    if (!done.empty() && done.size() != at.size()) throw InputError("Pool.step: expected a \"done\" for each action");
+    std::vector<std::uint8_t> successes(at.size()), rests(at.size()), terminated(at.size()), truncated(at.size());
     std::vector<std::string> failures(at.size());
     std::vector<std::vector<Gap>> gaps(at.size());
     const double* const numbers = actions.data();
     on_threads(at, [&](std::size_t row, Player& player) {
-      const StepResult result = player.step(Action(numbers + row * n, numbers + (row + 1) * n));
+      const bool is_done = !done.empty() && done[row];
+      const StepResult result = player.step(is_done ? Action() : Action(numbers + row * n, numbers + (row + 1) * n));
+      terminated[row] = result.terminated;
+      truncated[row] = result.truncated;
       batch.put(row, player, result.observation);
       successes[row] = result.is_success;
       rests[row] = !result.truncated;
@@ -286,7 +306,8 @@ class Pool {
     nb::list distances;
     for (const std::vector<Gap>& one : gaps) distances.append(parts(one));
     return nb::make_tuple(batch.arrays(), array(std::move(successes), {at.size()}), failures,
-                          array(std::move(rests), {at.size()}), distances);
+                          array(std::move(rests), {at.size()}), distances, array(std::move(terminated), {at.size()}),
+                          array(std::move(truncated), {at.size()}));
   }
 
   Doubles expert_actions(const std::vector<int>& at) {
@@ -296,6 +317,7 @@ class Pool {
     std::vector<double> all(at.size() * n);
     on_threads(at, [&](std::size_t row, Player& player) {
       const Action action = player.expert_action(std::nullopt);
+      if (action.empty()) std::fill_n(all.begin() + static_cast<std::ptrdiff_t>(row * n), n, std::nan(""));
       std::copy(action.begin(), action.end(), all.begin() + static_cast<std::ptrdiff_t>(row * n));
     });
     return array(std::move(all), {at.size(), n});
@@ -321,23 +343,28 @@ class Pool {
           count(n),
           rgb(n * picture.pixels() * 3),
           ids(n * picture.pixels()),
-          instances(n * size(rows) * 4) {}
+          instances(n * size(rows) * 4),
+          numbers(state_of(player.scenario()).size()),
+          state(n * numbers) {}
     void put(std::size_t row, const Player& player, const Observation& seen) {
       std::memcpy(rgb.data() + row * seen.rgb.size(), seen.rgb.data(), seen.rgb.size());
       std::memcpy(ids.data() + row * seen.ids.size(), seen.ids.data(), seen.ids.size());
       encode(seen, player.scenario().space, rows, instances.data() + row * size(rows) * 4);
+      std::copy(seen.state.begin(), seen.state.end(), state.begin() + static_cast<std::ptrdiff_t>(row * numbers));
     }
     nb::tuple arrays() {
       const auto down = size(picture.rows), across = size(picture.columns);
-      return nb::make_tuple(array(std::move(rgb), {count, down, across, 3}),
-                            array(std::move(ids), {count, down, across}),
-                            array(std::move(instances), {count, size(rows), 4}));
+      return nb::make_tuple(
+          array(std::move(rgb), {count, down, across, 3}), array(std::move(ids), {count, down, across}),
+          array(std::move(instances), {count, size(rows), 4}), array(std::move(state), {count, numbers}));
     }
     int rows;
     PictureSize picture;
     std::size_t count;
     std::vector<std::uint8_t> rgb, ids;
     std::vector<std::int16_t> instances;
+    std::size_t numbers;  // of a state
+    std::vector<double> state;
   };
 
   void expect_own_process() const {
@@ -435,6 +462,9 @@ NB_MODULE(_core, m) {
                      return std::pair(size.rows, size.columns);
                    })
       .def_prop_ro("most_instances", &most_instances_of)
+      .def_prop_ro("most_steps", [](const Scenario& s) { return find_task(*s.environment, s.task).most_steps; })
+      .def_ro("may_stop", &Scenario::may_stop)
+      .def_prop_ro("state_json", [](const Scenario& s) { return canonical(to_json(state_of(s))); })
       .def_prop_ro("action_space_json", [](const Scenario& s) { return canonical(to_json(actions_of(s))); });
   m.def("scenario", &scenario_at, "id"_a.none(), "path"_a.none());
   nb::class_<One>(m, "Environment")
@@ -450,7 +480,7 @@ NB_MODULE(_core, m) {
       .def(nb::init<const std::shared_ptr<const Scenario>&, const std::string&, const std::string&, int, int>(),
            "scenario"_a, "engine"_a, "layout"_a, "count"_a, "threads"_a)
       .def("reset", &Pool::reset, "at"_a, "split"_a, "arms"_a, "seeds"_a, "indices"_a)
-      .def("step", &Pool::step, "at"_a, "actions"_a)
+      .def("step", &Pool::step, "at"_a, "actions"_a, "done"_a)
       .def("expert_actions", &Pool::expert_actions, "at"_a)
       .def("__len__", &Pool::count)
       .def_prop_ro("utterances", &Pool::utterances)

@@ -16,7 +16,7 @@ import numpy
 from lgabench.scenes import ActionSpace
 import lgabench_method
 from lgabench_method import Demonstration, Instance, Instruction, Observation, Selection, Step
-from lgabench_method.values import selection
+from lgabench_method.values import named, selection
 
 if TYPE_CHECKING:
     import pandas
@@ -143,10 +143,15 @@ def load_demonstrations(file: Path) -> Demonstrations:
             one = data[f"demo_{number}"]
             tables = json.loads(one["instances"][()].tobytes())
             rgb, ids, actions = one["obs/rgb"][()], one["obs/ids"][()], one["actions"][()].astype(numpy.float64)
+            state = one["obs/state"][()] if "obs/state" in one else numpy.zeros((len(tables), 0))
+            stops = one["stops"][()] if "stops" in one else numpy.zeros(len(tables), bool)
+            brought = json.loads(one["brought"][()].tobytes()) if "brought" in one else [[]] * len(tables)
             steps = [Step(Observation(rgb[t], ids[t], [Instance(row["id"], row["object_type"], row["texture"], row["pixels"])
-                                                       for row in table]), actions[t]) for t, table in enumerate(tables)]
+                                                       for row in table], None, state[t], named(brought[t])),
+                          numpy.zeros(0) if stops[t] else actions[t]) for t, table in enumerate(tables)]
+            own = int(one.attrs.get("trajectory_steps", 1))
             meant = selection(json.loads(one["selection"][()].tobytes())) if "selection" in one else Selection()
-            all_of_them.append(Demonstration(Instruction(_text(one.attrs["utterance"]), meant), steps))
+            all_of_them.append(Demonstration(Instruction(_text(one.attrs["utterance"]), meant), steps[:own], steps[own:]))
     return all_of_them
 
 

@@ -33,8 +33,10 @@ def wilson(successes: int, episodes: int) -> tuple[float, float]:
 
 def evaluate(act: Callable[[Observation, str], numpy.typing.ArrayLike], scenario: Union[str, Scenario, Environment],
              episodes: int = 100, *, arm: Optional[str] = None, layout: Optional[str] = None, seed: int = 0,
-             own_scenes: Optional[int] = None, engine: str = "mujoco", strict: bool = False) -> Result:
-    """Plays the first `episodes` test scenes: act(observation, utterance) -> an action, in metres.
+             own_scenes: Optional[int] = None, engine: str = "mujoco", strict: bool = False,
+             reset: Optional[Callable[[], object]] = None) -> Result:
+    """Plays the first `episodes` test scenes: act(observation, utterance) -> an action, in metres. It is called once an episode,
+    in tasks of several steps until the episode is over; reset() before each episode.
 
     An action that is none (too few numbers, NaN, a rotation of norm 0) is a failure, `method_error`, as in a run; with `strict`
     its ValueError is raised. If all actions are none, the first ValueError is raised in any case: nothing was measured. What act()
@@ -47,14 +49,22 @@ def evaluate(act: Callable[[Observation, str], numpy.typing.ArrayLike], scenario
     first: Optional[ValueError] = None
     for index in range(episodes):
         seen = environment.reset("test", index, arm=arm, seed=seed, own_scenes=own_scenes)
-        action = act(seen, environment.utterance)
-        try:
-            failures[environment.step(action).failure] += 1
-        except ValueError as e:
-            if strict:
-                raise
-            first = first or e
-            failures["method_error"] += 1
+        if reset is not None:
+            reset()
+        while True:
+            action = act(seen, environment.utterance)
+            try:
+                result = environment.step(action)
+            except ValueError as e:
+                if strict:
+                    raise
+                first = first or e
+                failures["method_error"] += 1
+                break
+            if result.terminated or result.truncated:
+                failures[result.failure] += 1
+                break
+            seen = result.observation
     if first and failures["method_error"] == episodes:
         raise first
     won = failures.pop("none", 0)

@@ -1,4 +1,4 @@
-"""Scenes as Gymnasium environments: one action an episode, made by gymnasium.make("lgabench/heart-v1")."""
+"""Scenes as Gymnasium environments, made by gymnasium.make("lgabench/heart-v1"). Most episodes are one action."""
 from __future__ import annotations
 
 import os
@@ -33,9 +33,11 @@ def dense_reward(success: bool, distance: Mapping[str, float]) -> float:
 class _Reward:
     """A step's reward: `sparse`, 1 for a success and else 0, or `dense`, dense_reward()."""
 
-    def __init__(self, mode: str) -> None:
+    def __init__(self, mode: str, scenario: Scenario) -> None:
         if mode not in ("sparse", "dense"):
             raise ValueError(f"reward_mode {mode!r}: expected sparse or dense")
+        if mode == "dense" and scenario.most_steps > 1:
+            raise ValueError(f"reward_mode 'dense': an episode of {scenario.id} has several steps; expected sparse")
         self.is_dense = mode == "dense"
 
     def __call__(self, success: bool, distance: Mapping[str, float]) -> float:
@@ -72,12 +74,28 @@ def _read_words(space: Instruction, memory: Any, n: int = 1) -> Any:
 
 def observation_space(scenario: Scenario) -> spaces.Dict:
     rows, columns = scenario.picture_size
+    state = {"state": spaces.Box(numpy.array([one.low for one in scenario.state]), numpy.array([one.high for one in scenario.state]),
+                                 dtype=numpy.float64)} if scenario.state else {}
     return spaces.Dict({
+        **state,
         "rgb": spaces.Box(0, 255, (rows, columns, 3), numpy.uint8),
         "ids": spaces.Box(0, 255, (rows, columns), numpy.uint8),
         "instances": spaces.Box(-1, 32767, (scenario.most_instances, 4), numpy.int16),
         "instruction": Instruction(256, charset=PRINTABLE + "".join(sorted(set("".join(scenario.commands)) - set(PRINTABLE)))),
     })
+
+
+def action_space(scenario: Scenario) -> spaces.Box:
+    """Where the scenario may_stop there is one number more: above 0 it says that nothing is left to do."""
+    return spaces.Box(-1, 1, (len(scenario.action_space.low) + scenario.may_stop,), numpy.float32)
+
+
+def split_done(scenario: Scenario, actions: Any) -> tuple[Any, Any]:
+    """An action's own numbers, and whether nothing is left to do."""
+    if not scenario.may_stop:
+        return actions, numpy.zeros(numpy.shape(actions)[:-1], bool)
+    actions = numpy.asarray(actions)
+    return actions[..., :-1], actions[..., -1] > 0
 
 
 class _Choice:
@@ -113,6 +131,22 @@ class _Choice:
         return chosen["split"], chosen["arm"], int(chosen["scene_seed"]), int(index)
 
 
+def _ended(scenario: Scenario, terminated: Any, truncated: Any) -> tuple[Any, Any]:
+    """One action ends an episode, whatever became of it; several are cut off where a limit was reached."""
+    return (terminated | True, truncated & False) if scenario.most_steps == 1 else (terminated, truncated)
+
+
+def _with_done(scenario: Scenario, actions: Any) -> Any:
+    """The oracle's rows of numbers as an action_space() has them; a row without numbers says that nothing is left to do."""
+    if not scenario.may_stop:
+        return scenario.action_space.from_metres(actions)
+    done = numpy.isnan(actions).any(-1) if actions.shape[-1] else numpy.ones(len(actions), bool)
+    own = numpy.zeros((len(actions), len(scenario.action_space.low)), numpy.float32)
+    if not done.all():
+        own[~done] = scenario.action_space.from_metres(actions[~done])
+    return numpy.concatenate([own, numpy.where(done, 1, -1)[:, None]], -1).astype(numpy.float32)
+
+
 class SceneEnv(gymnasium.Env[dict[str, Any], numpy.typing.NDArray[numpy.float32]]):
     """One scenario, by its id or a file of your own (`path`). Actions are within [-1, 1]; `to_metres` says what they mean.
     Without a seed, reset() goes on by `stride` test scenes: n environments side by side play each once with a stride of n."""
@@ -121,16 +155,16 @@ class SceneEnv(gymnasium.Env[dict[str, Any], numpy.typing.NDArray[numpy.float32]
     def __init__(self, scenario: Union[str, Scenario, None] = None, *, path: Optional[Path] = None, split: str = "train",
                  engine: str = "mujoco", layout: Optional[str] = None, arm: Optional[str] = None, scene_seed: int = 0,
                  reward_mode: str = "sparse", render_mode: Optional[str] = None, stride: int = 1) -> None:
-        self._reward = _Reward(reward_mode)
         self.scenario = scenario if isinstance(scenario, Scenario) else Scenario(scenario, path=path)
+        self._reward = _Reward(reward_mode, self.scenario)
         self.environment = Environment(self.scenario, engine, layout)
         self.render_mode = render_mode
         self.object_types, self.textures = self.scenario.space.object_types, self.scenario.space.textures
         self.to_metres, self.from_metres = self.scenario.action_space.to_metres, self.scenario.action_space.from_metres
         self.observation_space = observation_space(self.scenario)
-        self.action_space = spaces.Box(-1, 1, self.scenario.action_space.low.shape, numpy.float32)
+        self.action_space = action_space(self.scenario)
         self.task = self.task_description = self.scenario.commands[0]
-        self._max_episode_steps = 1  # an episode is one action
+        self._max_episode_steps = self.scenario.most_steps
         self._choice = _Choice(self.scenario, split, arm, scene_seed, 0 if stride == 1 else None, stride)
         self._picture: Optional[numpy.typing.NDArray[numpy.uint8]] = None
         self._ready = False
@@ -148,16 +182,20 @@ class SceneEnv(gymnasium.Env[dict[str, Any], numpy.typing.NDArray[numpy.float32]
     def step(self, action: numpy.typing.NDArray[numpy.float32]
              ) -> tuple[dict[str, Any], SupportsFloat, bool, bool, dict[str, Any]]:
         if not self._ready:
-            raise RuntimeError("step: expected a reset() before it; an episode is one action")
-        metres = self.to_metres(action)
+            why = "an episode is one action" if self.scenario.most_steps == 1 else "the episode is over"
+            raise RuntimeError(f"step: expected a reset() before it; {why}")
+        own, done = split_done(self.scenario, action)
+        metres = self.to_metres(own)
         self._ready = False
-        result = self.environment.step(metres)
-        return (self._seen(result.observation), self._reward(result.success, result.distance), True, False,
+        result = self.environment.step([] if done else metres)
+        terminated, truncated = _ended(self.scenario, result.terminated, result.truncated)
+        self._ready = not terminated and not truncated
+        return (self._seen(result.observation), self._reward(result.success, result.distance), bool(terminated), bool(truncated),
                 {"is_success": result.success, "failure": result.failure, "distance": result.distance})
 
     def expert_action(self) -> numpy.typing.NDArray[numpy.float32]:
         """The oracle's action, within [-1, 1]."""
-        return self.from_metres(self.environment.expert_action())
+        return _with_done(self.scenario, self.environment.expert_action()[None])[0]
 
     def render(self) -> Any:
         return None if self.render_mode is None or self._picture is None else self._picture.copy()
@@ -167,7 +205,8 @@ class SceneEnv(gymnasium.Env[dict[str, Any], numpy.typing.NDArray[numpy.float32]
 
     def _seen(self, seen: Any) -> dict[str, Any]:
         self._picture = seen.rgb
-        return {"rgb": seen.rgb, "ids": seen.ids, "instances": self.environment.instance_rows, "instruction": self.task}
+        state = {"state": seen.state} if self.scenario.state else {}
+        return {**state, "rgb": seen.rgb, "ids": seen.ids, "instances": self.environment.instance_rows, "instruction": self.task}
 
     def __reduce__(self) -> NoReturn:
         refuse_copies()
@@ -175,8 +214,8 @@ class SceneEnv(gymnasium.Env[dict[str, Any], numpy.typing.NDArray[numpy.float32]
 
 class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
     """`num_envs` of a scenario on C++ threads: gymnasium.make_vec("lgabench/heart-v1", 8, threads=2). Environment i equals a
-    SceneEnv with seed + i and a stride of num_envs. An episode is one action, so each step() ends all: SAME_STEP begins the
-    next episodes at once."""
+    SceneEnv with seed + i and a stride of num_envs. Where an episode is one action, each step() ends all, and SAME_STEP begins
+    the next ones at once. Episodes of several steps end at other times; NEXT_STEP begins the next one in the step after."""
     metadata = {"render_modes": ["rgb_array"], "render_fps": 1, "autoreset_mode": AutoresetMode.SAME_STEP}
 
     def __init__(self, scenario: Union[str, Scenario, None] = None, num_envs: int = 1, *, path: Optional[Path] = None,
@@ -184,18 +223,18 @@ class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
                  scene_seed: int = 0, threads: Optional[int] = None,
                  autoreset_mode: Union[AutoresetMode, str] = AutoresetMode.SAME_STEP, reward_mode: str = "sparse",
                  render_mode: Optional[str] = None) -> None:
-        self._reward = _Reward(reward_mode)
         self.autoreset_mode = AutoresetMode(autoreset_mode)
-        if self.autoreset_mode == AutoresetMode.NEXT_STEP:
+        self.scenario = scenario if isinstance(scenario, Scenario) else Scenario(scenario, path=path)
+        self._reward = _Reward(reward_mode, self.scenario)
+        if self.autoreset_mode == AutoresetMode.NEXT_STEP and self.scenario.most_steps == 1:
             raise ValueError("autoreset_mode NextStep: an episode is one action, so every second step() would play nothing; "
                              "expected SameStep or Disabled")
         self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
-        self.scenario = scenario if isinstance(scenario, Scenario) else Scenario(scenario, path=path)
         self.num_envs, self.render_mode = num_envs, render_mode
         self.pool = Pool(self.scenario, num_envs, threads, engine, layout)
         self.to_metres, self.from_metres = self.scenario.action_space.to_metres, self.scenario.action_space.from_metres
         self.single_observation_space = observation_space(self.scenario)
-        self.single_action_space = spaces.Box(-1, 1, self.scenario.action_space.low.shape, numpy.float32)
+        self.single_action_space = action_space(self.scenario)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._choices = [_Choice(self.scenario, split, arm, scene_seed, i, num_envs) for i in range(num_envs)]
@@ -220,32 +259,43 @@ class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
         return self._observations(), infos
 
     def step(self, actions: Any) -> tuple[dict[str, Any], Any, Any, Any, dict[str, Any]]:
-        if not self._ready.all():
+        begins = ~self._ready & (self.autoreset_mode == AutoresetMode.NEXT_STEP and self._batch is not None)
+        if not (self._ready | begins).all():
             late = numpy.flatnonzero(~self._ready).tolist()
             raise RuntimeError(f"step: expected a reset() of environments {late} before it")
-        self._ready[:] = False
+        plays = [int(i) for i in numpy.flatnonzero(~begins)]
+        own, done = split_done(self.scenario, actions)
+        metres = self.to_metres(own)
+        self._ready[plays] = False
         utterances = self._utterances
-        batch, success, failures, distances = self.pool.step(self.to_metres(actions))
-        self._batch = batch
-        finals = [{"is_success": bool(success[i]), "failure": failures[i], "distance": distances[i]}
-                  for i in range(self.num_envs)]
-        rewards = numpy.array([self._reward(bool(success[i]), distances[i]) for i in range(self.num_envs)])
+        rewards = numpy.zeros(self.num_envs)
+        terminated, truncated = numpy.zeros(self.num_envs, bool), numpy.zeros(self.num_envs, bool)
+        finals: dict[int, dict[str, Any]] = {}
+        if plays:
+            batch, success, failures, distances = self.pool.step(metres[plays], plays, done=[bool(done[i]) for i in plays])
+            terminated[plays], truncated[plays] = _ended(self.scenario, self.pool.terminated, self.pool.truncated)
+            self._put(batch, plays)
+            for row, i in enumerate(plays):
+                rewards[i] = self._reward(bool(success[row]), distances[row])
+                finals[i] = {"is_success": bool(success[row]), "failure": failures[row], "distance": distances[row]}
+        over = terminated | truncated
+        self._ready[plays] = ~over[plays]
         infos: dict[str, Any] = {}
-        if self.autoreset_mode == AutoresetMode.SAME_STEP:
-            for i, final in enumerate(finals):
-                last = {name: array[i] for name, array in batch._asdict().items()}
+        same_step = self.autoreset_mode == AutoresetMode.SAME_STEP
+        for i, final in finals.items():
+            if same_step and over[i]:
+                last = {name: array[i] for name, array in self._arrays().items()}
                 last["instruction"] = utterances[i]
                 infos = self._add_info(infos, {"final_obs": last, "final_info": final}, i)
-            infos.update(self._begin(list(range(self.num_envs)), [None] * self.num_envs, [{}] * self.num_envs))
-        else:
-            for i, final in enumerate(finals):
+            elif not same_step:
                 infos = self._add_info(infos, final, i)
-        return (self._observations(), rewards, numpy.ones(self.num_envs, bool),
-                numpy.zeros(self.num_envs, bool), infos)
+        if again := [int(i) for i in numpy.flatnonzero(over if same_step else begins)]:
+            infos.update(self._begin(again, [None] * self.num_envs, [{}] * self.num_envs))
+        return self._observations(), rewards, terminated, truncated, infos
 
     def expert_actions(self) -> numpy.typing.NDArray[numpy.float32]:
         """The oracle's actions, a row for each environment."""
-        return self.from_metres(self.pool.expert_actions())
+        return _with_done(self.scenario, self.pool.expert_actions())
 
     def render(self) -> Any:
         return None if self.render_mode is None or self._batch is None else tuple(self._batch.rgb.copy())
@@ -278,17 +328,27 @@ class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
         chosen = [self._choices[i](seeds[i], options[i], self._randoms[i]) for i in at]
         batch = self.pool.reset(chosen[0][0], [one[3] for one in chosen], arms=[one[1] for one in chosen],
                                 seeds=[one[2] for one in chosen], at=at)
-        if len(at) < self.num_envs and self._batch is not None:
-            kept = Batch(self._batch.rgb.copy(), self._batch.ids.copy(), self._batch.instances.copy())
-            kept.rgb[at], kept.ids[at], kept.instances[at] = batch
-            batch = kept
-        self._batch, self._ready[at] = batch, True
+        self._put(batch, at)
+        self._ready[at] = True
         self._utterances, hashes = self.pool.utterances, self.pool.scene_hashes
         infos: dict[str, Any] = {}
         for i in at:
             infos = self._add_info(infos, {"scene": hashes[i]}, i)
         return infos
 
-    def _observations(self) -> dict[str, Any]:
+    def _put(self, batch: Batch, at: list[int]) -> None:
+        """Makes these the rows `at` of what is seen; arrays that were handed out stay as they are."""
+        if len(at) < self.num_envs and self._batch is not None:
+            kept = Batch(*(array.copy() for array in self._batch))
+            for all_of_them, rows in zip(kept, batch):
+                all_of_them[at] = rows
+            batch = kept
+        self._batch = batch
+
+    def _arrays(self) -> dict[str, Any]:
         assert self._batch is not None
-        return {**self._batch._asdict(), "instruction": tuple(self._utterances)}
+        arrays = self._batch._asdict()
+        return arrays if self.scenario.state else {name: array for name, array in arrays.items() if name != "state"}
+
+    def _observations(self) -> dict[str, Any]:
+        return {**self._arrays(), "instruction": tuple(self._utterances)}

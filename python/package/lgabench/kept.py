@@ -36,8 +36,9 @@ class Policy:
         self._size: tuple[int, int] = (0, 0)
 
     def act(self, observation: Observation, utterance: Optional[str] = None,
-            selection: Optional[Selection] = None) -> numpy.typing.NDArray[numpy.float64]:
-        """The action for a command of the cell (the first if None), with its Selection or with `selection`."""
+            selection: Optional[Selection] = None, *, begins: bool = True) -> numpy.typing.NDArray[numpy.float64]:
+        """The action for a command of the cell (the first if None), with its Selection or with `selection`. In tasks of several
+        steps `begins` says whether an episode begins."""
         utterance = next(iter(self.selections)) if utterance is None else utterance
         chosen = self.selections.get(utterance) if selection is None else selection
         if chosen is None:
@@ -47,7 +48,11 @@ class Policy:
         told = {**_values.selection_json(chosen, "selection:"), "provenance": chosen.provenance, "source": chosen.source,
                 "asked_as": chosen.asked_as}
         request = {"instruction": {"utterance": utterance, "selection": told},
-                   "instances": [vars(one) for one in observation.instances]}
+                   "instances": [vars(one) for one in observation.instances], "reset": begins}
+        if len(observation.state):
+            request["state"] = [float(one) for one in observation.state]
+        if observation.brought:
+            request["brought"] = [{"object_type": object_type, "texture": texture} for object_type, texture in observation.brought]
         pixels = [numpy.ascontiguousarray(array, numpy.uint8).tobytes() for array in (observation.rgb, observation.ids)]
         return numpy.array(self._ask(json.dumps(request).encode() + b"\n" + b"".join(pixels))["action"])
 

@@ -59,6 +59,14 @@ class ActionSpace:
         return numpy.clip(scaled, -1, 1).astype(numpy.float32)
 
 
+class StateNumber(NamedTuple):
+    """What a number of Observation.state is; its value lies within the bounds."""
+    name: str
+    unit: str
+    low: float
+    high: float
+
+
 class Scenario:
     """A task with its commands, layouts and test arms, by the id of a shipped scenario or by a file of your own (`path`)."""
 
@@ -74,6 +82,9 @@ class Scenario:
         self.space = FeatureSpace(self._core.space_id, self._core.object_types, self._core.textures)
         self.picture_size: tuple[int, int] = self._core.picture_size
         self.most_instances: int = self._core.most_instances
+        self.most_steps: int = self._core.most_steps  # actions of an episode
+        self.may_stop: bool = self._core.may_stop     # whether an action without numbers ends it: nothing is left to do
+        self.state = tuple(StateNumber(**one) for one in json.loads(self._core.state_json))
         space = json.loads(self._core.action_space_json)
         numbers, stations = space["numbers"], space.get("stations", {"numbers": [], "all": []})
         self.action_space = ActionSpace(tuple(one["name"] for one in numbers), tuple(one["unit"] for one in numbers),
@@ -114,13 +125,15 @@ def _scenario(id: Optional[str], path: Optional[str]) -> Scenario:
 
 class StepResult(NamedTuple):
     """What an action led to. `failure` is "none" or a word of docs/protocol.md. If `came_to_rest` is False, the episode was cut
-    off. `distance` has how far each part of success is from being right, 0 where it is right; all are 0 in a success. A part's
+    off. Episodes of several steps go on until `terminated` or `truncated`. `distance` has how far each part of success is from being right, 0 where it is right; all are 0 in a success. A part's
     name ends with its unit, _m, _deg or _px (docs/python.md lists the parts); a part without a unit is 0 or 1."""
     observation: Observation
     success: bool
     failure: str
     came_to_rest: bool
     distance: dict[str, float]
+    terminated: bool = True
+    truncated: bool = False
 
 
 def _expect(name: str, value: int, count: int) -> None:
@@ -146,7 +159,7 @@ def layout_of(scenario: Scenario, layout: Optional[str]) -> str:
 
 
 def _observation(seen: Any) -> Observation:
-    return Observation(seen[0], seen[1], [Instance(*row) for row in seen[2]], seen[3])
+    return Observation(seen[0], seen[1], [Instance(*row) for row in seen[2]], *seen[3:])
 
 
 class Environment:
@@ -181,7 +194,8 @@ class Environment:
         return _observation(seen)
 
     def step(self, action: numpy.typing.ArrayLike) -> StepResult:
-        """Carries out an action, in metres and unit vectors. A second action starts from the state reached."""
+        """Carries out an action, in metres and unit vectors. A second action starts from the state reached; in tasks of several
+        steps there is none when the episode is over. An action without numbers says that nothing is left to do (may_stop)."""
         (*seen, self._rows), *led_to = self._open().step(numpy.ascontiguousarray(action, numpy.float64))
         return StepResult(_observation(seen), *led_to)
 
@@ -228,15 +242,20 @@ class Environment:
 
 
 class Batch(NamedTuple):
-    """Observations of several environments, a row each; `instances` as Environment.instance_rows."""
+    """Observations of several environments, a row each; `instances` as Environment.instance_rows; `state` has no columns where
+    the task has none."""
     rgb: numpy.typing.NDArray[numpy.uint8]
     ids: numpy.typing.NDArray[numpy.uint8]
     instances: numpy.typing.NDArray[numpy.int16]
+    state: Numbers = numpy.zeros((0, 0))
 
 
 class Pool:
     """`count` environments of one scenario, advanced together on `threads` threads (as many as the job has cores if None). Each batch
-    is a new array. After a fork, the child's calls raise RuntimeError."""
+    is a new array. After a fork, the child's calls raise RuntimeError. After step(), `terminated` and `truncated` say for each row
+    whether the episode is over."""
+    terminated: numpy.typing.NDArray[numpy.bool_]
+    truncated: numpy.typing.NDArray[numpy.bool_]
 
     def __init__(self, scenario: Union[str, Scenario], count: int, threads: Optional[int] = None, engine: str = "mujoco",
                  layout: Optional[str] = None) -> None:
@@ -262,16 +281,19 @@ class Pool:
         return Batch(*self._pool.reset(list(at), split, list(arms or [self.scenario.arms[0]] * len(at)),
                                        list(seeds or [0] * len(at)), list(indices)))
 
-    def step(self, actions: numpy.typing.ArrayLike, at: Optional[Sequence[int]] = None
+    def step(self, actions: numpy.typing.ArrayLike, at: Optional[Sequence[int]] = None, *,
+             done: Optional[Sequence[bool]] = None
              ) -> tuple[Batch, numpy.typing.NDArray[numpy.bool_], list[str], list[dict[str, float]]]:
-        """Carries out a row of `actions` in each environment. Returns observations, successes, failures,
-        distances (StepResult)."""
+        """Carries out a row of `actions` in each environment; where `done` says so, that nothing is left to do. Returns
+        observations, successes, failures, distances (StepResult)."""
         at = range(len(self)) if at is None else at
-        seen, success, failures, _, distances = self._pool.step(list(at), numpy.ascontiguousarray(actions, numpy.float64))
+        seen, success, failures, _, distances, terminated, truncated = self._pool.step(
+            list(at), numpy.ascontiguousarray(actions, numpy.float64), [bool(one) for one in done or []])
+        self.terminated, self.truncated = terminated.view(numpy.bool_), truncated.view(numpy.bool_)
         return Batch(*seen), success.view(numpy.bool_), failures, distances
 
     def expert_actions(self) -> Numbers:
-        """The oracle's actions, a row for each environment."""
+        """The oracle's actions, a row for each environment; NaN where it says that nothing is left to do."""
         actions: Numbers = self._pool.expert_actions(list(range(len(self))))
         return actions
 

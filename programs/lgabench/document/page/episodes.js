@@ -70,7 +70,11 @@ const leaves = (e) => {
 const before = (e) => picture(e.picture, `before: ${where(e)}${wayOf("action", e.action)}${wayOf("oracle", e.oracle)}`,
   outline(e) + oracle(e) + own(e));
 const kept = (e) => e.mask ? picture(e.mask, `goal mask: ${where(e)}`, outline(e) + own(e)) : "";
-const after = (e) => e.end === undefined ? "" : picture(e.end || e.picture, `after the action: ${where(e)}`);
+// The ends of an episode: one picture, or that after each of several steps.
+const ends = (e) => e.end === undefined ? [] : [e.end].flat().map((end, i, all) => {
+  const name = all.length === 1 ? "after the action" : `after step ${i + 1} of ${all.length}`;
+  return [end === "" ? `${name}: nothing moved` : name, picture(end || e.picture, `${name}: ${where(e)}`)];
+});
 
 const card = (e) =>
   `<figure><button type="button" class="zoom" data-episode="${escaped(episodeId(e))}"><span class="pair">` +
@@ -91,7 +95,7 @@ function read(e) {
 // One episode, as large as the dialog.
 function single(e) {
   const shown = [["before: the action is white, the oracle’s green, the target outlined", before(e)],
-    [e.end === "" ? "after the action: nothing moved" : "after the action", after(e)],
+    ...ends(e),
     ["goal mask: what φ̂ keeps of the scene", kept(e)], ...saw(e)].filter(([, drawn]) => drawn);
   return `<p>${told(e)}. ${escaped(e.command)}${leaves(e)} <small>${escaped(where(e))}</small></p>${chips(e)}<div class="large">` +
     shown.map(([name, drawn]) =>
