@@ -19,7 +19,8 @@ namespace {
 constexpr int scenes_a_task = 10, most_lost = 1;  // of a task
 constexpr std::uint64_t engine_seed = 7;
 
-// A scene played by the oracle: what was seen before and after, and how it was judged, bit for bit.
+// A scene played by the oracle to its end: what was seen before and after each step, and how it was judged, bit for
+// bit.
 struct Played {
   std::string bytes;
   bool success = false;
@@ -29,14 +30,23 @@ struct Played {
 std::string bytes_of(const Observation& seen) {
   std::string text(seen.ids.begin(), seen.ids.end());
   text.append(seen.rgb.begin(), seen.rgb.end());
+  for (const double value : seen.state) text += fmt::format("{:a} ", value);
   return hex(hash64(text));
 }
 
 Played play(Environment& environment, const Scene& scene) {
-  const std::string before = bytes_of(environment.reset(scene));
-  const StepResult result = environment.step(environment.expert_action());
-  return {fmt::format("{} {} {}\n", before, bytes_of(result.observation), result.failure), result.is_success,
-          result.failure};
+  Played played{bytes_of(environment.reset(scene))};
+  for (bool over = false; !over;) {
+    const StepResult result = environment.step(environment.expert_action());
+    played.bytes += fmt::format(" {} {}", bytes_of(result.observation), result.failure);
+    played.success = result.is_success;
+    played.failure = result.failure == failure::goes_on
+                         ? fmt::format("the oracle has not ended it after {} steps", environment.most_steps())
+                         : result.failure;
+    over = result.terminated || result.truncated;
+  }
+  played.bytes += '\n';
+  return played;
 }
 
 // The contract on a world of boxes, without the framework's renderer, which keeps threads of its own.

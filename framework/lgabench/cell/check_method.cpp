@@ -133,7 +133,10 @@ struct Answering {
                  seed,
                  log,
                  actions_of(scenario),
-                 declared_truth(scenario.commands, job.plugin.asks)} {}
+                 declared_truth(scenario.commands, job.plugin.asks)} {
+    services.state = state_of(scenario);
+    services.may_stop = scenario.may_stop;
+  }
 
   Scenario asked;  // its people
   RecordedLanguageModel recorded;
@@ -186,15 +189,26 @@ struct Outside {
   }
 };
 
-// The action's numbers as text. @throws MethodError where it cannot be carried out.
+// The numbers of the scene's actions as text, of several steps those of the whole episode. @throws MethodError where
+// one cannot be carried out.
 std::string action_text(const Actor& actor, const Bench& bench, const Sight& sight, Outside* outside = nullptr) {
-  const Move move = actor.act(*bench.environment, sight.scene, sight.observation);
-  const ActionSpace& space = bench.environment->action_space();
-  executable(space, move.action);
-  if (outside) outside->note(space, move.action);
+  Environment& environment = *bench.environment;
+  const ActionSpace& space = environment.action_space();
+  const bool is_one = environment.most_steps() == 1;
+  if (!is_one) environment.reset(sight.scene);
+  Observation seen = sight.observation;
   std::string text;
-  for (const double value : as_stored(space, move.action)) text += fmt::format("{:a} ", value);
-  return text;
+  for (int step = 0;; ++step) {
+    const Move move = actor.act(environment, sight.scene, seen, step);
+    if (move.action.empty() && bench.scenario.may_stop) return text + "done";
+    executable(space, move.action);
+    if (outside) outside->note(space, move.action);
+    for (const double value : as_stored(space, move.action)) text += fmt::format("{:a} ", value);
+    if (is_one) return text;
+    StepResult result = environment.step(move.action);
+    if (result.terminated || result.truncated) return text;
+    seen = std::move(result.observation);
+  }
 }
 
 // In a process of its own, as where a kept policy is opened.
@@ -497,7 +511,7 @@ class MethodCheck {
     if (!is_library()) return;
     constexpr int calls = 200, bearable = 256;  // bytes a call
     const auto act_all = [&](int n) {
-      for (int i = 0; i < n; ++i)
+      for (int i = 0; i < n / bench.environment->most_steps(); ++i)
         act("act", actor, bench, bench.sights[static_cast<std::size_t>(i) % bench.sights.size()]);
     };
     act_all(20);
@@ -551,8 +565,14 @@ CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase
   std::optional<Scenario> unseen = with_unseen_commands(job.environment);
   if (job.environment.empty()) job.environment = unseen ? unseen->environment->id() : environment_ids().front();
   std::vector<std::unique_ptr<Bench>> benches;
-  const std::string& example = find_environment(job.environment).tasks().front().example;
-  benches.push_back(std::make_unique<Bench>(load_scenario(example), engine));
+  const TaskInfo& task = find_environment(job.environment).tasks().front();
+  const Scenario example = load_scenario(task.example);
+  if (task.most_steps > 1) {  // the method is told of this task's state, so that no other one is played
+    job.task = task.id;
+    job.may_stop = example.may_stop;
+    if (unseen && unseen->task != task.id) unseen.reset();
+  }
+  benches.push_back(std::make_unique<Bench>(example, engine));
   if (unseen) benches.push_back(std::make_unique<Bench>(*std::move(unseen), engine));
   phase("load", {});
   std::optional<Kept> kept;
