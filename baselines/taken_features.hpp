@@ -7,27 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include <lgabench/core/contains.hpp>
+#include <lgabench/abstraction/taken_looks.hpp>
 #include <lgabench/core/stations.hpp>
 
-// Type and texture of objects, each as often as it was taken.
-struct Counts {
-  std::vector<std::pair<std::string, std::string>> objects;
-
-  bool none() const { return objects.empty(); }
-  bool has(const lgabench::Instance& one) const {
-    return lgabench::contains(objects, std::pair(one.object_type, one.texture));
-  }
-  /// (times its type + 1/2) (times its texture + 1/2), as the reference row most_demonstrated has it.
-  double score(const lgabench::Instance& one) const {
-    double types = .5, textures = .5;
-    for (const auto& [type, texture] : objects) types += type == one.object_type, textures += texture == one.texture;
-    return types * textures;
-  }
-};
-
 struct TakenFeatures {
-  Counts taken, received;  // the latter: what it was brought to, where actions have stations
+  lgabench::TakenLooks taken, received;  // the latter: what it was brought to, where actions have stations
 
   void add(const lgabench::Demonstration& one, const lgabench::ActionSpace& actions) {
     for (const lgabench::Step& step : one.steps) add(taken, step.observation, lgabench::taken(step, actions));
@@ -35,7 +19,7 @@ struct TakenFeatures {
   }
 
  private:
-  static void add(Counts& to, const lgabench::Observation& seen, std::optional<std::uint8_t> id) {
+  static void add(lgabench::TakenLooks& to, const lgabench::Observation& seen, std::optional<std::uint8_t> id) {
     for (const lgabench::Instance& one : seen.instances)
       if (one.id == id) to.objects.emplace_back(one.object_type, one.texture);
   }
@@ -57,7 +41,7 @@ inline TakenFeatures taken_for(const std::string& utterance, const std::vector<l
 }
 
 // The set and all types and all textures of these objects, in the space's order.
-inline lgabench::FeatureSet with(const Counts& features, const lgabench::FeatureSet& set,
+inline lgabench::FeatureSet with(const lgabench::TakenLooks& features, const lgabench::FeatureSet& set,
                                  const lgabench::FeatureSpace& space) {
   std::set<std::string> types(set.object_types.begin(), set.object_types.end()),
       textures(set.textures.begin(), set.textures.end());
@@ -71,4 +55,27 @@ inline lgabench::FeatureSet with(const Counts& features, const lgabench::Feature
     return names;
   };
   return {in_order(space.object_types, types), in_order(space.textures, textures)};
+}
+
+// Of the visible objects that may be taken those of the highest score, all where several are alike.
+template <typename Score, typename MayBe>
+lgabench::TakenLooks likest(const lgabench::Observation& observation, const Score& score, const MayBe& may_be) {
+  lgabench::TakenLooks best;
+  double most = 0;
+  for (const lgabench::Instance& one : observation.instances) {
+    if (one.pixels == 0 || lgabench::is_place(one.object_type) || !may_be(one)) continue;
+    const double of_it = score(one);
+    if (of_it < most) continue;
+    if (of_it > most) best.objects.clear();
+    most = of_it;
+    best.objects.emplace_back(one.object_type, one.texture);
+  }
+  return best;
+}
+
+// Each look as a set of its own.
+inline std::vector<lgabench::FeatureSet> sets_of(const lgabench::TakenLooks& looks) {
+  std::vector<lgabench::FeatureSet> sets;
+  for (const auto& [type, texture] : looks.objects) sets.push_back({{type}, {texture}});
+  return sets;
 }

@@ -491,6 +491,27 @@ class PythonMethods(Case):
                               env=dict(os.environ, PYTHONPATH=f"{BUILD}/share/lgabench/python"))
         self.assertEqual(done.stdout, "Python 3.9, expected 3.10 or later\n", done.stderr)
 
+    def test_committed_embeddings_can_be_read(self):
+        (self.dir / "near.py").write_text("""
+from lgabench_method import FeatureSet, Selection
+from lgabench_method.embeddings import embedding
+
+class Near:
+    version, summary = "1", "the type whose name is nearest to the command"
+
+    def select(self, command, space, services):
+        words = embedding(command.utterance)
+        nearest = max(space.object_types, key=lambda name: embedding(name) @ words)
+        return Selection(FeatureSet([nearest], list(space.textures)))
+
+    def learn(self, demonstrations, services):
+        label = demonstrations[0].steps[0].label
+        return type("Same", (), {"act": lambda self, observation, instruction: label})()
+""")
+        self.call(*RUN, "--methods", "near.py:Near", "--out", "near")
+        selections = [json.loads(file.read_text()) for file in (self.dir / "near/cells").glob("*/selection.json")]
+        self.assertEqual([one["commands"][0]["selection"]["target"]["object_types"] for one in selections], [["heart"]])
+
     def test_new_plugin_and_check_plugin(self):
         self.call("new-plugin", "my_method", "--kind", "python")
         done = self.call("check-plugin", "my_method/my_method.py:MyMethod", "--python", PYTHON)

@@ -88,7 +88,8 @@ class Testing(unittest.TestCase):
 
 class Docstrings(unittest.TestCase):
     MODULES = ("lgabench", "lgabench.scenes", "lgabench.gym", "lgabench.data", "lgabench.evaluation", "lgabench.kept", "lgabench.evals",
-               "lgabench.registration", "lgabench_method", "lgabench_method.testing", "lgabench_method.repaint")
+               "lgabench.registration", "lgabench_method", "lgabench_method.testing", "lgabench_method.repaint",
+               "lgabench_method.embeddings")
 
     def without(self, module):
         """Public names of a module, and of its classes, that say nothing of themselves."""

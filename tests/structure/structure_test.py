@@ -14,8 +14,8 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.M)
 LIBRARY = ["abstraction", "cell", "core", "drawn", "harness", "host", "job", "learning", "plugin", "record", "statistics", "worker"]
 PROGRAMS = ["cli", "document", "http", "leaderboard", "report", "study"]
 # Lines that are neither blank nor a comment. Who raises one says in the commit's message what that buys.
-BUDGET = {"abstraction": 3600, "cell": 3380, "core": 4260, "drawn": 1480, "harness": 3360, "host": 3280, "job": 360,
-          "learning": 4000, "plugin": 820, "record": 1240, "statistics": 4780, "worker": 400, "cli": 7700,
+BUDGET = {"abstraction": 3620, "cell": 3260, "core": 4180, "drawn": 1480, "harness": 3360, "host": 3200, "job": 360,
+          "learning": 3960, "plugin": 820, "record": 1220, "statistics": 4780, "worker": 400, "cli": 7660,
           "document": 1380, "http": 360, "leaderboard": 5180, "report": 2980, "study": 2400}
 ENVIRONMENTS = sorted(file.parent.name for file in (SOURCE / "envs").glob("*/CMakeLists.txt")
                       if "lgabench_environment(" in file.read_text())

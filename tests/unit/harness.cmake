@@ -10,7 +10,7 @@ lgabench_unit_test(harness_test SOURCES ${CMAKE_CURRENT_LIST_DIR}/harness_suite_
                    LINK lgabench_cell lgabench_harness lgabench_tabletop)
 target_compile_definitions(harness_test PRIVATE LGABENCH_TEST_REFERENCE="${PROJECT_SOURCE_DIR}/tests/reference")
 # They play on a real engine and read the real plugins, found as the programs find them: beside lib/.
-add_dependencies(harness_test engines lgabench_perturbations masked_rgb masked_bc texture_aug class_aug erase object_dropout keypoints set_network embedding_select taken_features lga_taken lga lga_hill human lga_s lga_l gcbc_dart gcbc_seg factorial plga plga_active)
+add_dependencies(harness_test engines lgabench_perturbations masked_rgb masked_bc texture_aug class_aug erase object_dropout keypoints set_network embedding_select taken_features taken_names lga_taken lga_then_taken lga lga_hill human lga_s lga_l gcbc_dart gcbc_seg factorial plga plga_active)
 
 lgabench_unit_test(perturbed_scenes_test SOURCES ${CMAKE_CURRENT_LIST_DIR}/perturbed_scenes_test.cpp
                    LINK lgabench_cell lgabench_harness lgabench_tabletop)

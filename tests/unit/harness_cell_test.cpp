@@ -5,6 +5,7 @@
 #include <set>
 
 #include <lgabench/abstraction/scenes.hpp>
+#include <lgabench/abstraction/taken_looks.hpp>
 #include <lgabench/abstraction/textualization.hpp>
 #include <lgabench/cell/constant_action.hpp>
 #include <lgabench/cell/demonstrations.hpp>
@@ -336,6 +337,39 @@ TEST_F(Play, MostDemonstratedCountsWhatTheScenesCommandTook) {
   EXPECT_TRUE(takes("most_demonstrated", 1, 0));
   EXPECT_TRUE(takes("most_demonstrated", 2, 0)) << "nobody demonstrated it: what all took most often";
   for (const int command : {0, 1, 2}) EXPECT_TRUE(takes("least_demonstrated", command, 2));
+  // Nothing that was taken is in view; a letter with stripes is likest in name to another one.
+  shown.scenes.clear();
+  SceneObject letter = objects[0];
+  letter.object_type = "letter A";
+  letter.texture = "red and yellow stripe";
+  shown.scenes.emplace_back();
+  shown.scenes.back().objects = {letter};
+  for (const std::size_t like : {0, 1, 2}) {
+    for (Instance& one : labelled.instances)
+      for (std::size_t i = 0; i < objects.size(); ++i)
+        if (one.id == objects[i].instance_id) {
+          one.object_type = i == like ? "letter V" : "ring";
+          one.texture = i == like ? "blue and purple stripe" : "tiger";
+        }
+    EXPECT_TRUE(takes("most_alike_names", 0, like)) << like;
+  }
+}
+
+TEST(ReferenceRows, LikenessInNameIsOfMeansAndCounts) {
+  const std::map<std::string, std::vector<float>> vectors{
+      {"a", {1, 0}}, {"b", {.6f, .8f}}, {"c", {-1, 0}}, {"x", {0, 1}}, {"y", {0, 1}}};
+  const EmbeddingOf embedding = [&](const std::string& name) -> const std::vector<float>& { return vectors.at(name); };
+  const auto likeness = [&](const char* type, const char* texture, const TakenLooks& taken) {
+    Instance one;
+    one.object_type = type;
+    one.texture = texture;
+    return alike_in_name(one, taken, embedding);
+  };
+  const TakenLooks taken{{{"a", "x"}, {"b", "x"}}};
+  EXPECT_NEAR(likeness("a", "x", taken), 1.5 * .8 * 2.5 * 1, 1e-6);
+  EXPECT_NEAR(likeness("a", "y", taken), 1.5 * .8 * .5 * 1, 1e-6) << "means the same, and was not taken";
+  EXPECT_EQ(likeness("c", "x", taken), 0) << "the contrary";
+  EXPECT_EQ(likeness("a", "x", {}), .25);
 }
 
 TEST(ReferenceRows, LeadToTheReceiverThatWasDemonstrated) {

@@ -9,6 +9,7 @@
 #include <lgabench/abstraction/repaint.hpp>
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/core/environments.hpp>
+#include <lgabench/core/stations.hpp>
 #include <lgabench/learning/inputs.hpp>
 #include <lgabench/plugin/loader.hpp>
 
@@ -341,6 +342,64 @@ TEST_F(Relatives, WhatWasTakenIsSelectedOfTheCommandsOwnDemonstrations) {
   const Meaning three = revised("lga_taken", of_other, two);
   ASSERT_EQ(three.sets.size(), 3u);
   EXPECT_EQ(three.sets.back(), (FeatureSet{{"heart"}, {last}}));
+}
+
+// Where it acts tells what it took for the target: the middle of what is in its mask.
+TEST_F(Relatives, LikenessInNameAndChoiceWithinASelectionDecideWhatIsTaken) {
+  const ActionSpace& actions = find_environment("tabletop").action_space();
+  const std::uint8_t shown_id = *taken(demonstrations.front(), actions);
+  std::vector<Demonstration> shown(1, demonstrations.front());
+  const auto rename = [](Observation& seen, std::uint8_t id, const char* type, const char* texture) {
+    for (Instance& one : seen.instances)
+      if (one.id == id) one.object_type = type, one.texture = texture;
+  };
+  rename(shown[0].steps[0].observation, shown_id, "letter A", "red and yellow stripe");
+  std::vector<std::uint8_t> ids;  // of the probe, in view
+  for (const Instance& one : probe.instances)
+    if (one.pixels > 50 && !is_place(one.object_type)) ids.push_back(one.id);
+  ASSERT_GE(ids.size(), 2u);
+  Observation seen = probe;
+  for (const std::uint8_t id : ids) rename(seen, id, "ring", "tiger");
+  rename(seen, ids[1], "letter V", "blue and purple stripe");
+  const auto middle = [&](std::uint8_t id) {
+    const auto all = placed(seen);
+    return *std::find_if(all.begin(), all.end(), [id](const Placed& one) { return one.instance.id == id; });
+  };
+  const auto acts_on = [&](const char* id, const Meaning& selected, const std::string& utterance) {
+    const PluginInfo& plugin = catalogue.find("method", id);
+    const Json all = resolve_options(plugin, {{"policy", "centroid"}});
+    method = load_method(plugin);
+    RecordedLanguageModel lm(scenario, scenario.recorded);
+    TruthAsHuman human(scenario.commands);
+    Services services{lm, human, all, seed, log, actions};
+    const Command command{utterance, scenario.task};
+    Instruction told{utterance, method->select({instruction.utterance, scenario.task}, scenario.space, services)};
+    if (!selected.empty()) told.selection.target = selected;
+    if (method->needs(all).revise) told.selection = method->revise(command, told.selection, shown, services);
+    const Action action = method->learn(shown, services)->act(seen, told);
+    const Vec2 from = in_picture(actions, actions.places[0], action, seen.size);
+    std::uint8_t nearest = 0;
+    for (const std::uint8_t one : ids)
+      if (nearest == 0 || norm(Vec2{middle(one).column, middle(one).row} - from) <
+                              norm(Vec2{middle(nearest).column, middle(nearest).row} - from))
+        nearest = one;
+    return nearest;
+  };
+  const std::string& own = instruction.utterance;
+  EXPECT_EQ(acts_on("taken_names", {}, own), ids[1]) << "another letter with stripes";
+  rename(seen, ids[0], "letter V", "blue and purple stripe");
+  rename(seen, ids[1], "ring", "tiger");
+  EXPECT_EQ(acts_on("taken_names", {}, own), ids[0]);
+
+  // Of the two that the Selection keeps the one whose texture was taken.
+  rename(seen, ids[0], "letter V", "tiger");
+  rename(seen, ids[1], "ring", "red and yellow stripe");
+  const Meaning both({"letter V", "ring"}, {"tiger", "red and yellow stripe"});
+  EXPECT_EQ(acts_on("lga_then_taken", both, own), ids[1]);
+  rename(seen, ids[0], "letter V", "red and yellow stripe");
+  rename(seen, ids[1], "ring", "tiger");
+  EXPECT_EQ(acts_on("lga_then_taken", both, own), ids[0]);
+  EXPECT_EQ(acts_on("lga_then_taken", Meaning({"ring"}, {"tiger"}), own), ids[1]) << "it keeps one alone";
 }
 
 #if defined(LGABENCH_HAS_DIFFUSION)

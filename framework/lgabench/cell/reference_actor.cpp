@@ -4,11 +4,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <set>
 #include <utility>
 
+#include <lgabench/abstraction/committed_embeddings.hpp>
+#include <lgabench/abstraction/taken_looks.hpp>
 #include <lgabench/cell/constant_action.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>
@@ -83,59 +86,53 @@ Actor never_demonstrated(const std::string& row, const DemonstratedScenes& demon
   });
 }
 
-// How often demonstrations took, or led to, objects of a type and of a texture.
-struct Counts {
-  std::map<std::string, int> types, textures;
-
-  void add(const SceneObject& object) {
-    ++types[object.object_type];
-    ++textures[object.texture];
-  }
-  double score(const Instance& one) const {
-    const auto times = [](const std::map<std::string, int>& counts, const std::string& name) {
-      const auto found = counts.find(name);
-      return (found == counts.end() ? 0 : found->second) + .5;
-    };
-    return times(types, one.object_type) * times(textures, one.texture);
-  }
-};
-
+// What demonstrations took, and what they led to.
 struct Demonstrated {
-  Counts taken, received;
+  TakenLooks taken, received;
 
   void add(const Scene& scene, const Role& second) {
-    if (const SceneObject* target = scene.find(role::target)) taken.add(*target);  // the one that the oracle takes
-    if (const SceneObject* receiver = scene.find(second)) received.add(*receiver);
+    if (const SceneObject* target = scene.find(role::target)) add(taken, *target);  // the one that the oracle takes
+    if (const SceneObject* receiver = scene.find(second)) add(received, *receiver);
+  }
+
+ private:
+  static void add(TakenLooks& to, const SceneObject& object) {
+    to.objects.emplace_back(object.object_type, object.texture);
   }
 };
 
-enum class Extreme { most, least };
+using Score = std::function<double(const Instance& one, const TakenLooks& taken)>;
 
-// Those of the highest score, or of the lowest.
-Instances extreme(const Instances& all, const Counts& counts, Extreme which) {
+double counted(const Instance& one, const TakenLooks& taken) { return taken.counted(one); }
+
+// Those of the highest score.
+Instances likest(const Instances& all, const TakenLooks& taken, const Score& score) {
   std::map<double, Instances> by_score;
-  for (const Instance& one : all) by_score[counts.score(one)].push_back(one);
-  return which == Extreme::most ? by_score.rbegin()->second : by_score.begin()->second;
+  for (const Instance& one : all) by_score[score(one, taken)].push_back(one);
+  return by_score.rbegin()->second;
 }
 
-Actor by_demonstrations(const std::string& row, Extreme which, const DemonstratedScenes& shown) {
+enum class Counting { of_its_command, of_all };
+
+Actor by_demonstrations(const std::string& row, const Score& score, Counting counting,
+                        const DemonstratedScenes& shown) {
   Demonstrated all;
   std::map<int, Demonstrated> of_command;
   for (const Scene& scene : shown.scenes) {
     all.add(scene, shown.second);
-    if (which == Extreme::most) of_command[scene.command].add(scene, shown.second);
+    if (counting == Counting::of_its_command) of_command[scene.command].add(scene, shown.second);
   }
   return {[=](const Environment& environment, const Given& given) {
     const Scene& scene = given.scene;
     const auto of_its_own = of_command.find(scene.command);
     const Demonstrated& demonstrated = of_its_own == of_command.end() ? all : of_its_own->second;
     Instances seen = visible(given);
-    const Instance object = drawn(extreme(seen, demonstrated.taken, which), row, scene);
+    const Instance object = drawn(likest(seen, demonstrated.taken, score), row, scene);
     Action action = environment.expert_action_for(object.id);
     seen.erase(std::remove_if(seen.begin(), seen.end(), [&](const Instance& one) { return one.id == object.id; }),
                seen.end());
     if (shown.actions.stations.all.empty() || shown.second.empty() || seen.empty()) return Move(action);
-    const Instance receiver = drawn(extreme(seen, demonstrated.received, which), row + "/" + shown.second, scene);
+    const Instance receiver = drawn(likest(seen, demonstrated.received, score), row + "/" + shown.second, scene);
     if (const auto at = seen_at(shown.actions, given.observation(), receiver.id)) {
       const Stations& stations = shown.actions.stations;
       action = led_to(stations, nearest_station(stations, *at), std::move(action));
@@ -145,11 +142,25 @@ Actor by_demonstrations(const std::string& row, Extreme which, const Demonstrate
 }
 
 Actor most_demonstrated(const std::string& row, const DemonstratedScenes& shown) {
-  return by_demonstrations(row, Extreme::most, shown);
+  return by_demonstrations(row, counted, Counting::of_its_command, shown);
 }
 
 Actor least_demonstrated(const std::string& row, const DemonstratedScenes& shown) {
-  return by_demonstrations(row, Extreme::least, shown);
+  const Score least = [](const Instance& one, const TakenLooks& taken) { return -taken.counted(one); };
+  return by_demonstrations(row, least, Counting::of_all, shown);
+}
+
+Actor most_alike_names(const std::string& row, const DemonstratedScenes& shown) {
+  const auto all = std::make_shared<const std::map<std::string, std::vector<float>>>(committed_embeddings());
+  const EmbeddingOf embedding = [all](const std::string& name) -> const std::vector<float>& {
+    const auto found = all->find(name);
+    if (found == all->end()) throw InputError(fmt::format("\"{}\": expected a name with a committed embedding", name));
+    return found->second;
+  };
+  const Score score = [embedding](const Instance& one, const TakenLooks& taken) {
+    return alike_in_name(one, taken, embedding);
+  };
+  return by_demonstrations(row, score, Counting::of_its_command, shown);
 }
 
 std::unique_ptr<Method> constant_action() { return std::make_unique<ConstantAction>(); }
@@ -166,6 +177,7 @@ constexpr Acting all_acting[] = {
     {"oracle", nullptr, oracle},
     {"most_demonstrated", nullptr, most_demonstrated},
     {"least_demonstrated", nullptr, least_demonstrated},
+    {"most_alike_names", nullptr, most_alike_names},
     {"most_shared", nullptr, most_shared},
     {"never_demonstrated", nullptr, never_demonstrated},
 };

@@ -22,8 +22,9 @@ std::unique_ptr<Method> reference_method(const std::string& id);
 /// "most_shared", one of those that share types and textures with most others; "never_demonstrated", one whose type and
 /// texture together were no target's in `shown`, any where there is none; "most_demonstrated", the highest score (times
 /// its type was taken + 1/2) x (times its texture was + 1/2) in the command's demonstrations, in all where it has none;
-/// "least_demonstrated", the lowest in all. Where actions have stations, the last two lead to the object that scores so
-/// among those of the second set. Drawn from a stream of row and scene. None of a row that is a method.
+/// "most_alike_names", likewise by alike_in_name(); "least_demonstrated", the lowest score in all. Where actions have
+/// stations, the last three lead to the object that scores so among those of the second set. Drawn from a stream of row
+/// and scene. None of a row that is a method.
 /// @throws InputError for another id.
 Actor reference_actor(const std::string& id, const DemonstratedScenes& shown = {});
 

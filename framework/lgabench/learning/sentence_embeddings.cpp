@@ -5,9 +5,8 @@
 #include <boost/dll/import.hpp>
 #include <boost/dll/runtime_symbol_info.hpp>
 
+#include <lgabench/abstraction/committed_embeddings.hpp>
 #include <lgabench/core/files.hpp>
-#include <lgabench/core/json.hpp>
-#include <lgabench/learning/samples.hpp>
 #include <lgabench/learning/sentence_encoder.hpp>
 
 namespace lgabench {
@@ -27,26 +26,7 @@ decltype(&make_sentence_encoder) load_encoder() {
 
 }  // namespace
 
-SentenceEmbeddings::SentenceEmbeddings() {
-  const fs::path directory = data_directory() / "embeddings";
-  std::error_code error;
-  const std::vector<std::string> names = json_names(directory, error);
-  if (error) throw InputError(fmt::format("{}: cannot be read: {}", directory.string(), error.message()));
-
-  for (const std::string& name : names) {
-    const fs::path file = directory / (name + ".json");
-    const Json document = read_json(file);
-    const JsonReader embeddings = JsonReader(document, file.string()).at("embeddings");
-    for (const auto& item : embeddings.json().items()) {
-      std::vector<float> vector;
-      for (const JsonReader& number : embeddings.at(item.key()).elements())
-        vector.push_back(static_cast<float>(number.number()));
-      if (vector.size() != text_size)
-        embeddings.at(item.key()).fail(fmt::format("{} numbers ({} were read)", text_size, vector.size()));
-      embeddings_.emplace(item.key(), std::move(vector));
-    }
-  }
-}
+SentenceEmbeddings::SentenceEmbeddings() : embeddings_(committed_embeddings()) {}
 
 const std::vector<float>& SentenceEmbeddings::of(const std::string& sentence) {
   const auto found = embeddings_.find(sentence);
