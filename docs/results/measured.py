@@ -111,7 +111,10 @@ LISTED = {"plga+unlisted=0.0": "a model's list alone", "plga": "the list, and 0.
 
 
 def persons(run="persons"):
-    """Success by demonstrations, and what each row loses to exact Bayes with as many questions."""
+    """Success by demonstrations, and what each row loses with as many questions: to the ceiling, and to exact Bayes with one Selection."""
+    losses = [("regret", "regret"), ("to Bayes with one Selection", "to_bayes")]
+    if not any("to_bayes" in one for one in RUNS[run]["regret"]):  # a run of before regret was to the ceiling
+        losses = [("to Bayes with one Selection", "regret")]
     found, names = {}, {**PERSONS, **(LISTED if run == "persons_lists" else {})}
     for one in RUNS[run]["regret"]:
         row = re.sub(r"\+questions=[^+]*", "", one["method"])
@@ -120,9 +123,11 @@ def persons(run="persons"):
     lines = []
     for (questions, row), by_n in sorted(found.items(), key=lambda one: (one[0][0], list(names).index(one[0][1]))):
         last = by_n[ns[-1]]
+        lost = [f"{last[member]:+.2f} [{interval(last[f'{member}_interval'])}]" if member in last and row != of else "" for member, of in
+                zip((member for _, member in losses), ("person_rule+choice=scene", "person_rule")[-len(losses):])]
         lines.append([names[row], str(questions), *(f"{number(by_n[n]['success'])} [{interval(by_n[n]['success_interval'])}]" for n in ns),
-                      "" if row == "person_rule" else f"{last['regret']:+.2f} [{interval(last['regret_interval'])}]"])
-    return commands(run) + table(["row", "questions", *(f"{n} demonstration{'' if n == 1 else 's'}" for n in ns), f"regret at {ns[-1]}"], lines)
+                      *lost])
+    return commands(run) + table(["row", "questions", *(f"{n} demonstration{'' if n == 1 else 's'}" for n in ns), *(f"{word} at {ns[-1]}" for word, _ in losses)], lines)
 
 
 PICTURED = {"human": "the truth", "lga": "LGA", "taken_features": "most demonstrated names", "gcbc_seg": "GCBC-SEG",
@@ -217,7 +222,7 @@ def leaks(suite):
     rules = sorted(arm["leaks"], key=best, reverse=True)
     found = ", ".join(f"{RULES[rule]} {number(best(rule))}" for rule in rules)
     return (f"Rules without a language model find the target of the main arm (preset `{name.split('-')[1]}`) in a share of scenes above chance, "
-            f"{number(best('random_object'))}: {found} ([all rules](#without-language)).\n")
+            f"{number(best('random_object'))}: {found} ([all rules](#without-a-language-model)).\n")
 
 
 def shown(cell):

@@ -458,6 +458,15 @@ class Live(Asking):
             self.assertEqual((status["state"], status["fault"]), ("failed", "host"))
         self.assertEqual(len((self.dir / "tape.jsonl").read_text().splitlines()), 2 * 111)
 
+    def test_what_would_be_asked_can_be_seen_and_asks_nobody(self):
+        said = self.call("select", "red_heart", "--show-prompt").stdout
+        system, user = said.split("\n---\n")
+        self.assertIn("Object types: ", system)
+        self.assertIn('The command is: "Bring me the red heart."', user)
+        self.assertIn('Could the target object have the object type "', user)
+        self.assertEqual(len(self.server.asked), 0)
+        self.assertIn("--show-prompt excludes --score", self.call("select", "--suite", "q1", "--score", "--show-prompt", expect=2).stderr)
+
     def test_the_request_is_part_of_what_the_answers_are(self):
         self.server.refuses_temperature = True
         self.play("--request", '{"temperature": null}')

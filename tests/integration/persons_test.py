@@ -181,7 +181,8 @@ class Persons(Case):
 
     def test_the_report_says_what_a_row_loses_to_exact_bayes(self):
         """And the true rule, which policy=point acts by, never fails."""
-        self.call("run", "persons", "--preset", "smoke", "--methods", "person_rule+learns=words,person_rule,human", *RUN, "--out", "out")
+        self.call("run", "persons", "--preset", "smoke", "--methods", "person_rule+learns=words,person_rule,person_rule+choice=scene,human", *RUN,
+                  "--out", "out")
         self.assert_matches_schemas("out")
         success = {}
         for key, (cell, _) in self.cells("out").items():
@@ -195,11 +196,20 @@ class Persons(Case):
         self.assertEqual(set(said), set(success))
         for (row, n), one in said.items():
             self.assertAlmostEqual(one["success"], success[row, n], msg=row)
-            self.assertAlmostEqual(one["regret"], success["person_rule", n] - success[row, n], msg=row)
+            self.assertAlmostEqual(one["regret"], success["person_rule+choice=scene", n] - success[row, n], msg=row)
+            if row == "person_rule+choice=scene":  # it does not select once
+                self.assertNotIn("to_bayes", one)
+                continue
+            self.assertAlmostEqual(one["to_bayes"], success["person_rule", n] - success[row, n], msg=row)
+            for interval, member in ((one["regret_interval"], "regret"), (one["to_bayes_interval"], "to_bayes")):
+                self.assertLessEqual(interval["low"], one[member] + 1e-9)
+                self.assertGreaterEqual(interval["high"], one[member] - 1e-9)
             self.assertEqual((one["persons"], one["questions"]), (25, 0))
         self.assertEqual((success["human", 0], success["human", 3]), (1, 1))
         self.assertGreater(success["person_rule", 3], success["person_rule", 0])
-        self.assertIn("What rows lose to exact Bayes", (self.dir / "out/report.md").read_text())
+        page = (self.dir / "out/report.md").read_text()
+        self.assertIn("What rows lose to exact Bayes", page)
+        self.assertIn("to Bayes with one Selection", page)
 
     def test_a_hint_leaves_fewer_rules(self):
         """And a person with a rule that their hint excludes is refused."""

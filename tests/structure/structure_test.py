@@ -15,8 +15,8 @@ LIBRARY = ["abstraction", "cell", "core", "drawn", "harness", "host", "job", "le
 PROGRAMS = ["cli", "document", "http", "leaderboard", "report", "study"]
 # Lines that are neither blank nor a comment. Who raises one says in the commit's message what that buys.
 BUDGET = {"abstraction": 3620, "cell": 3260, "core": 4180, "drawn": 1480, "harness": 3360, "host": 3200, "job": 360,
-          "learning": 3960, "plugin": 820, "record": 1220, "statistics": 4780, "worker": 400, "cli": 7660,
-          "document": 1380, "http": 360, "leaderboard": 5180, "report": 2980, "study": 2400}
+          "learning": 3960, "plugin": 820, "record": 1220, "statistics": 4860, "worker": 400, "cli": 7660,
+          "document": 1380, "http": 360, "leaderboard": 5340, "report": 3000, "study": 2400}
 ENVIRONMENTS = sorted(file.parent.name for file in (SOURCE / "envs").glob("*/CMakeLists.txt")
                       if "lgabench_environment(" in file.read_text())
 

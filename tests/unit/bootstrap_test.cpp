@@ -299,5 +299,51 @@ TEST(TypeIError, OfDrawingFewScenariosIsTooHigh) {
   EXPECT_GT(type_1_error({6, 3, 20, true, .05, .30}, drawn_scenarios), at_most);
 }
 
+// How often the interval over commands holds the mean over all commands that there could be. docs/protocol.md has the
+// numbers: fewer than 95 % where commands' differences are skewed, or most lie at a bound.
+TEST(OverClusters, CoverWhatTheyPromise) {
+  const auto normal = [](RandomStream& random) {
+    return .2 +
+           .2 * std::sqrt(-2 * std::log(1 - random.uniform())) * std::cos(2 * 3.141592653589793 * random.uniform());
+  };
+  const auto skewed = [](RandomStream& random) { return std::pow(random.uniform(), 2); };
+  const auto at_a_bound = [](RandomStream& random) { return 1 - std::pow(random.uniform(), 4); };
+  struct Commands {
+    const char* name;
+    std::function<double(RandomStream&)> draw;
+    double mean, least;
+  };
+  for (const Commands& commands : {Commands{"normal", normal, .2, .94}, Commands{"skewed", skewed, 1. / 3, .91},
+                                   Commands{"at a bound", at_a_bound, .8, .84}})
+    for (std::size_t n = least_clusters; n <= 14; n += 2) {
+      RandomStream random(std::string(commands.name) + std::to_string(n));
+      constexpr int trials = 10000;
+      int held = 0;
+      for (int trial = 0; trial < trials; ++trial) {
+        Values values;
+        for (std::size_t i = 0; i < n; ++i) values.push_back(commands.draw(random));
+        const Interval interval = *over_clusters(values, Values(n, 1), {mean(values), mean(values)});
+        held += interval.low <= commands.mean && commands.mean <= interval.high;
+      }
+      const double coverage = 1. * held / trials;
+      RecordProperty(std::string(commands.name) + std::to_string(n), std::to_string(coverage));
+      EXPECT_GE(coverage, commands.least) << commands.name << " " << n;
+      EXPECT_LE(coverage, .96) << commands.name << " " << n;
+    }
+}
+
+TEST(OverClusters, AreUndecidedBelowSixAndNoNarrowerThanWithinThem) {
+  EXPECT_FALSE(over_clusters(Values(5, .2), Values(5, 1), {.1, .3}));
+  const Interval alike = *over_clusters(Values(6, .2), Values(6, 1), {.1, .3});
+  EXPECT_EQ(alike.low, .1);
+  EXPECT_EQ(alike.high, .3);
+  const Values values{.1, .2, .3, .4, .5, .9};
+  const Interval equal = *over_clusters(values, Values(6, 2), {.4, .4}), t = paired_t(values).interval;
+  EXPECT_NEAR(equal.low, t.low, 1e-12);
+  EXPECT_NEAR(equal.high, t.high, 1e-12);
+  const Interval heavy = *over_clusters(values, {1, 1, 1, 1, 1, 5}, {.6, .6});
+  EXPECT_NEAR((heavy.low + heavy.high) / 2, .6, 1e-12) << "the mean, each by its weight";
+}
+
 }  // namespace
 }  // namespace lgabench::statistics

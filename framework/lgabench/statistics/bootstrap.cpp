@@ -215,10 +215,9 @@ Change paired_change(const Samples& scenarios, std::string_view name, int resamp
 }
 
 SharedResamples::SharedResamples(const std::vector<std::vector<std::vector<std::vector<double>>>>& rows, bool shared,
-                                 std::string_view name, const std::vector<double>& weights, Draws draws) {
+                                 std::string_view name, const std::vector<double>& weights) {
   constexpr std::size_t resamples = 10000;
   const RowsByScene scenarios = transposed(rows);
-  const auto count = static_cast<std::uint32_t>(scenarios.size());
   for (const auto& units : scenarios)
     scenes_ += static_cast<double>((shared ? 1 : units.size()) * units.front().size());
   RandomStream random(name);
@@ -227,10 +226,9 @@ SharedResamples::SharedResamples(const std::vector<std::vector<std::vector<std::
   for (std::size_t k = 0; k < resamples; ++k) {
     sums.assign(rows.size(), 0);
     float counted = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t drawn = draws == Draws::scenes ? i : random.below(count);
-      const float times = weights.empty() ? 1 : static_cast<float>(weights[drawn]);
-      add_resampled(scenarios[drawn], shared, times, random, sums);
+    for (std::size_t i = 0; i < scenarios.size(); ++i) {
+      const float times = weights.empty() ? 1 : static_cast<float>(weights[i]);
+      add_resampled(scenarios[i], shared, times, random, sums);
       counted += times;
     }
     for (std::size_t r = 0; r < rows.size(); ++r) means_[r][k] = sums[r] / counted;

@@ -67,12 +67,11 @@ Change paired_change(const Samples& scenarios, std::string_view name, int resamp
 /// above, of every pair, then cost little more than one.
 class SharedResamples {
  public:
-  enum class Draws { scenes, scenarios_too };  // beside the policies
   /// `rows`: of each row, scenario, policy and scene the success, or a mean of it. `shared`: as Sample::shared;
   /// of a single policy it says nothing. `weights`: what each scenario counts in a mean; as much as any other where
   /// none is given. @pre all rows have as many scenarios, policies and scenes; none is empty
   SharedResamples(const std::vector<std::vector<std::vector<std::vector<double>>>>& rows, bool shared,
-                  std::string_view name, const std::vector<double>& weights = {}, Draws draws = Draws::scenes);
+                  std::string_view name, const std::vector<double>& weights = {});
   /// As success_interval(), of a row's mean.
   Interval interval(std::size_t row) const;
   /// As paired_change(): two-sided p that two rows are equally good. Where no resample is on the other side of 0 the

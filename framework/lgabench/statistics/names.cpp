@@ -187,6 +187,10 @@ std::string provenance_words(const std::string& provenance, bool erring) {
   return "";
 }
 
+bool was_asked(const std::string& provenance, const std::string& source) {
+  return provenance != "recorded" || source.rfind("Claude (Anthropic", 0) != 0;
+}
+
 bool worded_otherwise(const std::string& asked_as, const std::string& utterance) {
   const auto words = [](std::string_view text) {
     return !text.empty() && text.back() == '.' ? text.substr(0, text.size() - 1) : text;

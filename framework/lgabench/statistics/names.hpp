@@ -59,6 +59,11 @@ class MethodStyles {
 /// `erring`: errors were made in it on purpose.
 std::string provenance_words(const std::string& provenance, bool erring);
 
+/// Whether somebody was asked each question that a Selection counts. Of the shipped answers GPT-4's were; Claude's are
+/// lists that were written in one pass (the files say how), though a row counts a question a candidate.
+/// `source`: the model, as the Selection names it.
+bool was_asked(const std::string& provenance, const std::string& source);
+
 /// Whether two wordings differ by more than a final full stop.
 bool worded_otherwise(const std::string& asked_as, const std::string& utterance);
 

@@ -1,5 +1,6 @@
-// What a row loses against exact Bayes in a suite of persons, who do not say all that they want.
+// What a row loses in a suite of persons, who do not say all that they want.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,20 +9,29 @@
 
 namespace lgabench::statistics {
 
-/// One row at one number of demonstrations and of questions. Each person (a command) counts alike; intervals, 95 %, are
-/// over persons and scenes.
+/// A difference in success, with its 95 % interval over persons and scenes; none: too few persons to decide.
+struct Loss {
+  double difference = 0;
+  std::optional<Interval> interval;
+};
+
+/// One row at one number of demonstrations and of questions. Each person (a command) counts alike.
 struct Regret {
   std::string layout, engine, method;
   int demonstrations = 0, questions = 0, persons = 0;
-  double success = 0, regret = 0;  // regret: of the row person_rule with as many of both, less this row's success
-  Interval success_interval, interval;
+  double success = 0;
+  std::optional<Interval> success_interval;
+  std::optional<Loss> regret;    // of the ceiling with as many of both, less this row; none where the run lacks it
+  std::optional<Loss> to_bayes;  // likewise of Bayes with one Selection; of rows that select once
 };
 /// Of a run whose scenarios ask people in scenes, in the order of layout, engine, demonstrations and questions; rows
-/// with a failed cell, or without the row to compare with, are left out.
+/// with a failed cell, or with nothing to compare with, are left out.
 std::vector<Regret> regrets(const RunResults& run);
 Json to_json(const Regret& regret);
 
-/// The row that others are compared with, and the best known one: the same rule, which chooses anew in each scene.
+/// Exact Bayes of the grammar, with the best questions and one Selection; or, the ceiling for rows that know no more of
+/// the person, with what is likeliest in each scene.
 bool is_bayes(const CellResult& cell);
+bool is_ceiling(const CellResult& cell);
 
 }  // namespace lgabench::statistics

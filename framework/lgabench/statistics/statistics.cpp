@@ -121,6 +121,18 @@ Change paired_t(const std::vector<double>& differences) {
   return student(all.mean, *all.se, static_cast<double>(differences.size()) - 1);
 }
 
+std::optional<Interval> over_clusters(const std::vector<double>& values, const std::vector<double>& weights,
+                                      const Interval& within) {
+  if (values.size() < least_clusters) return {};
+  const auto n = static_cast<double>(values.size());
+  const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+  const double m = std::inner_product(values.begin(), values.end(), weights.begin(), 0.0) / total;
+  double squares = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) squares += std::pow(weights[i] / total * (values[i] - m), 2);
+  const Interval between = student(m, std::sqrt(squares * n / (n - 1)), n - 1).interval;
+  return Interval{std::min(between.low, within.low), std::max(between.high, within.high)};
+}
+
 Change welch_t(const std::vector<double>& first, const std::vector<double>& second) {
   const Spread a = spread(first), b = spread(second);
   const double va = *a.se * *a.se, vb = *b.se * *b.se, both = va + vb;

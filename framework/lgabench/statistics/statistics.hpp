@@ -47,6 +47,16 @@ double wilcoxon(const std::vector<double>& differences);
 /// Student's paired t test of a mean difference (Student 1908). @pre at least two differences
 Change paired_t(const std::vector<double>& differences);
 
+/// Fewer clusters (commands, persons) say nothing of others like them: their interval is undecided.
+constexpr std::size_t least_clusters = 6;
+
+/// 95 % interval of the mean over clusters that were drawn, by Student's t: each cluster's value counts its weight, and
+/// the variance is the linearised one (Särndal, Swensson and Wretman 1992). It is no narrower than `within`, which says
+/// what chance does to these clusters: clusters that all agree do not make certain. None below least_clusters.
+/// interval_coverage_test.cpp simulates its coverage. @pre as many weights as values, above 0
+std::optional<Interval> over_clusters(const std::vector<double>& values, const std::vector<double>& weights,
+                                      const Interval& within);
+
 /// Welch's t test of the difference of two means, first minus second (Welch 1947). @pre at least two values each
 Change welch_t(const std::vector<double>& first, const std::vector<double>& second);
 

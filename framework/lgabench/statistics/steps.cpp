@@ -38,10 +38,10 @@ std::map<std::size_t, std::vector<double>> by_command(const CellResult& cell, co
   return all;
 }
 
-// None where the four rows are not paired: other scenarios, seeds, scenes or policies.
+// None where the rows are not paired: other scenarios, seeds, scenes or policies.
 std::optional<StageOutcomes> outcomes_of(const RunResults& run, const Steps& steps) {
   std::vector<Policies> rows;
-  for (const Stage& stage : stages) rows.push_back(policies_of(run, steps, stage.method));
+  for (const Steps::Played& one : steps.played) rows.push_back(policies_of(run, steps, one.stage->method));
   std::map<std::pair<std::string, std::size_t>, std::size_t> commands;  // scenario and command -> its place
   std::map<std::string, const CellResult*> first;                       // of each scenario
   StageOutcomes outcomes{std::vector<std::vector<std::vector<std::vector<double>>>>(rows.size()), {}, true};
@@ -71,24 +71,37 @@ std::optional<StageOutcomes> outcomes_of(const RunResults& run, const Steps& ste
 
 }  // namespace
 
+namespace {
+
+double mean_rate_of(const StageOutcomes& outcomes, std::size_t stage, std::size_t command) {
+  const auto& policies = outcomes.rates[stage][command];
+  double rates = 0;
+  for (const std::vector<double>& policy : policies) rates += mean(policy);
+  return rates / static_cast<double>(policies.size());
+}
+
+}  // namespace
+
 double mean_rate(const StageOutcomes& outcomes, std::size_t stage) {
   double sum = 0, weights = 0;
   for (std::size_t c = 0; c < outcomes.weights.size(); ++c) {
-    double rates = 0;
-    for (const std::vector<double>& policy : outcomes.rates[stage][c]) rates += mean(policy);
-    sum += outcomes.weights[c] * rates / static_cast<double>(outcomes.rates[stage][c].size());
+    sum += outcomes.weights[c] * mean_rate_of(outcomes, stage, c);
     weights += outcomes.weights[c];
   }
   return sum / weights;
 }
 
-std::array<Step, 3> steps_of(const StageOutcomes& outcomes, std::string_view name) {
-  const SharedResamples scenes(outcomes.rates, outcomes.shared, name, outcomes.weights, SharedResamples::Draws::scenes),
-      commands(outcomes.rates, outcomes.shared, name, outcomes.weights, SharedResamples::Draws::scenarios_too);
-  std::array<Step, 3> steps;
-  for (std::size_t i = 0; i < steps.size(); ++i)
-    steps[i] = {mean_rate(outcomes, i + 1) - mean_rate(outcomes, i), scenes.difference(i, i + 1),
-                commands.difference(i, i + 1)};
+std::vector<Step> steps_of(const StageOutcomes& outcomes, std::string_view name) {
+  const SharedResamples scenes(outcomes.rates, outcomes.shared, name, outcomes.weights);
+  std::vector<Step> steps;
+  for (std::size_t i = 0; i + 1 < outcomes.rates.size(); ++i) {
+    std::vector<double> by_command;
+    for (std::size_t c = 0; c < outcomes.weights.size(); ++c)
+      by_command.push_back(mean_rate_of(outcomes, i + 1, c) - mean_rate_of(outcomes, i, c));
+    const Interval interval = scenes.difference(i, i + 1);
+    steps.push_back({mean_rate(outcomes, i + 1) - mean_rate(outcomes, i), interval,
+                     over_clusters(by_command, outcomes.weights, interval)});
+  }
   return steps;
 }
 
@@ -97,47 +110,51 @@ std::vector<Steps> all_steps(const RunResults& run, const std::vector<Table>& ta
   for (const Table& table : tables) {
     const std::optional<Column> main = main_column(table, about);
     for (const int n : table.demonstrations()) {
-      Steps steps{table.layout, table.engine, main->arm, n, 0, {}, {}, {}};
+      Steps steps{table.layout, table.engine, main->arm, n, 0, {}, {}};
       bool whole = true;
-      for (std::size_t i = 0; i < stages.size(); ++i) {
-        const Row* row = table.find(main->arm, mean_scenario, stages[i].method, n);
-        whole = whole && row && row->success;
-        if (!whole) break;
-        steps.success[i] = *row->success;
-        steps.rows[i] = row->index;
+      for (const Stage& stage : stages) {
+        const Row* row = table.find(main->arm, mean_scenario, stage.method, n);
+        if (row && row->success)
+          steps.played.push_back({&stage, *row->success, row->index});
+        else
+          whole = whole && !stage.needed;
       }
-      if (whole) all.push_back(steps);
+      if (whole) all.push_back(std::move(steps));
     }
   }
-  std::vector<std::optional<StageOutcomes>> outcomes(all.size());
   in_parallel(all.size(), [&](std::size_t i) {
     Steps& steps = all[i];
-    outcomes[i] = outcomes_of(run, steps);
-    if (!outcomes[i]) return;
-    steps.commands = static_cast<int>(outcomes[i]->weights.size());
-    steps.steps = steps_of(*outcomes[i], fmt::format("report/steps/{}/{}/{}/{}", steps.layout, steps.engine, steps.arm,
-                                                     steps.demonstrations));
+    std::optional<StageOutcomes> outcomes = outcomes_of(run, steps);
+    if (!outcomes) {  // of a row that is not needed
+      steps.played.erase(std::remove_if(steps.played.begin(), steps.played.end(),
+                                        [](const Steps::Played& one) { return !one.stage->needed; }),
+                         steps.played.end());
+      outcomes = outcomes_of(run, steps);
+    }
+    if (!outcomes) return;
+    steps.commands = static_cast<int>(outcomes->weights.size());
+    steps.steps = steps_of(*outcomes, fmt::format("report/steps/{}/{}/{}/{}", steps.layout, steps.engine, steps.arm,
+                                                  steps.demonstrations));
   });
   all.erase(std::remove_if(all.begin(), all.end(), [](const Steps& steps) { return steps.commands == 0; }), all.end());
   return all;
 }
 
-std::string signed_interval(const Interval& interval) {
-  return fmt::format("[{}, {}]", signed_text(interval.low), signed_text(interval.high));
+std::string signed_interval(const std::optional<Interval>& interval) {
+  if (!interval) return "undecided";
+  return fmt::format("[{}, {}]", signed_text(interval->low), signed_text(interval->high));
 }
 
 Json to_json(const Steps& steps) {
   Json stages_json = Json::array(), steps_json = Json::array();
-  for (std::size_t i = 0; i < stages.size(); ++i)
-    stages_json.push_back({{"what", stages[i].what},
-                           {"method", stages[i].method},
-                           {"success", steps.success[i]},
-                           {"row", steps.rows[i]}});
-  for (const Step& step : steps.steps)
-    steps_json.push_back({{"difference", step.difference},
-                          {"low", step.interval.low},
-                          {"high", step.interval.high},
-                          {"over_commands", {{"low", step.over_commands.low}, {"high", step.over_commands.high}}}});
+  for (const Steps::Played& one : steps.played)
+    stages_json.push_back(
+        {{"what", one.stage->what}, {"method", one.stage->method}, {"success", one.success}, {"row", one.row}});
+  for (const Step& step : steps.steps) {
+    steps_json.push_back({{"difference", step.difference}, {"low", step.interval.low}, {"high", step.interval.high}});
+    if (step.over_commands)
+      steps_json.back()["over_commands"] = {{"low", step.over_commands->low}, {"high", step.over_commands->high}};
+  }
   return {{"layout", steps.layout},     {"engine", steps.engine},
           {"arm", steps.arm},           {"demonstrations", steps.demonstrations},
           {"commands", steps.commands}, {"stages", stages_json},

@@ -36,7 +36,7 @@ struct SelectArguments {
                               request, best_product;
   long reply_timeout_s = OpenAiOptions().timeout_s;
   int concurrency = 4, max_queries = -1;
-  bool json = false, score = false, any_served = false;
+  bool json = false, score = false, show_prompt = false, any_served = false;
   int scenes = 30;
   std::vector<std::string> names, segments, arms;
 };
@@ -238,6 +238,13 @@ void select(const Asked& asked, LanguageModel* answering, const SelectArguments&
   if (const auto& second = selection.second) print_set(second->role.c_str(), *second, asked.space, judged);
 }
 
+// What a server would be asked first about the command: whether the target could have the space's first object type.
+void show_prompt(const Asked& asked) {
+  const Question first = feature_questions(asked.command, asked.space).front();
+  const Prompt prompt = PromptTemplate().fill(asked.command, asked.space, first);
+  to_stdout("{}\n---\n{}", prompt.system, prompt.user);
+}
+
 // Whether who answers is asked about pictures.
 bool looks(const SelectArguments& a) { return contains(a.names, looked); }
 
@@ -291,6 +298,10 @@ void add_select(CLI::App& app, int&) {
               "textures that keeps the meant objects in most training scenes (found by ascent, from the truth)")
       ->needs("--suite")
       ->excludes(score);
+  verb.option(
+          "--show-prompt", arguments->show_prompt,
+          "Print the first question that a server would get, system prompt, a line ---, user prompt, and ask nobody")
+      ->excludes(score);
   verb.below("Who answers");
   verb.option(
       "--answers SOURCE", arguments->answers,
@@ -325,6 +336,10 @@ void add_select(CLI::App& app, int&) {
     if (!arguments->arms.empty() && arguments->names.empty() && arguments->segments.empty())
       throw InputError("--arms: expected --names or --segments with it");
     if (!arguments->names.empty() || !arguments->segments.empty()) return score_reading(*arguments);
+    if (arguments->show_prompt) {
+      for (const Asked& asked : find_commands(*arguments)) show_prompt(asked);
+      return;
+    }
     const Answerer answerer = make_answerer(*arguments);
     if (arguments->score) {
       const auto with_answers = [&](const Scenario& scenario, const std::function<void(LanguageModel&)>& use) {

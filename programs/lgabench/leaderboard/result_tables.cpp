@@ -93,6 +93,7 @@ void add_results(document::Section& section, const NamedTable& table, const fs::
   if (table.standings.empty()) return;
   if (table.steps) {
     add_captioned(section, steps_grid(*table.steps, setting.suite, setting.name() + "_steps"));
+    if (!table.curve.empty()) add_captioned(section, curve_grid(table.curve, setting.suite, setting.name() + "_curve"));
     section.add<Paragraph>(reading, {{statistics::words_of_steps}});
     if (table.undisputed) section.add<Paragraph>(reading, {{words_of(*table.undisputed)}});
   }
@@ -108,23 +109,41 @@ Grid all_steps_grid(const Suites& suites) {
   Grid grid;
   grid.name = "steps";
   grid.caption = "Success by what one policy is told, in each suite's main arm";
-  grid.heads = {"suite", "scenes",        "n",           "pixels",    "labels", "language",
-                "truth", "language adds", "left to win", "undisputed"};
-  grid.align = "llrrrrrrrr";
+  grid.heads = {"suite",
+                "scenes",
+                "scenarios",
+                "n",
+                "pixels",
+                "labels",
+                "command read",
+                "both",
+                "true mask",
+                "reading the command adds",
+                "other scenarios too",
+                "left to win",
+                "undisputed"};
+  grid.align = "llrrrrrrrllrr";
   for (const auto& [suite, tables] : suites) {
     const Titles titles(suite);
     for (const NamedTable& table : tables) {
       const std::optional<BoardSteps>& steps = table.steps;
       if (!steps || table.track.kind != Track::abstraction) continue;
-      Grid::Row row{{},
-                    {Span::link(titles.suite(), "results/" + suite + ".md"), Span(titles.arm(steps->main.arm)),
-                     Span::number(std::to_string(steps->main.demonstrations))}};
-      for (const double success : steps->success) row.cells.emplace_back(Span::number(fixed(success)));
-      const statistics::Step& language = steps->steps[1];
-      row.cells.emplace_back(Span::number(
-          fmt::format("{} {}", signed_text(language.difference), statistics::signed_interval(language.interval))));
-      row.cells.emplace_back(Span::number(signed_text(steps->steps[2].difference)));
-      row.cells.emplace_back(Span::number(fixed(steps->undisputed[2].value_or(steps->success[2]))));
+      Grid::Row row{
+          {},
+          {Span::link(titles.suite(), "results/" + suite + ".md"), Span(titles.arm(steps->column.arm)),
+           Span::number(std::to_string(steps->scenarios)), Span::number(std::to_string(steps->column.demonstrations))}};
+      const auto success = [&](const BoardSteps::Played* one) {
+        row.cells.push_back(one ? document::TableCell(Span::number(fixed(one->success))) : "–");
+      };
+      const BoardSteps::Played &truth = *steps->of(statistics::true_mask), &read = *steps->of(statistics::command_read);
+      for (const BoardSteps::Played* one :
+           {&steps->played.front(), &steps->labels(), &read, steps->of(statistics::both_stage), &truth})
+        success(one);
+      row.cells.emplace_back(Span::number(fmt::format("{} {}", signed_text(steps->read.difference),
+                                                      statistics::signed_interval(steps->read.interval))));
+      row.cells.emplace_back(Span::number(statistics::signed_interval(steps->read.over_commands)));
+      row.cells.emplace_back(Span::number(signed_text(truth.success - steps->best)));
+      row.cells.emplace_back(Span::number(fixed(read.undisputed.value_or(read.success))));
       grid.rows.push_back(std::move(row));
     }
   }

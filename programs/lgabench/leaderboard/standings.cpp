@@ -11,6 +11,7 @@
 #include <lgabench/leaderboard/areas.hpp>
 #include <lgabench/record/reference_rows.hpp>
 #include <lgabench/statistics/bootstrap.hpp>
+#include <lgabench/statistics/names.hpp>
 
 namespace lgabench::leaderboard {
 namespace {
@@ -112,11 +113,23 @@ std::optional<double> mean_share(const Entry& entry, std::optional<double> NameQ
   return all.empty() ? std::nullopt : std::optional(mean(all));
 }
 
+// Whether nobody was asked the questions that the cell counts.
+bool not_asked(const Entry& entry, const PlayedCell& cell) {
+  const auto lists = entry.phi.find(cell.place.scenario);
+  if (lists == entry.phi.end() || cell.lm_queries == 0) return false;
+  const Json& commands = lists->at(cell.phi);
+  return std::any_of(commands.begin(), commands.end(), [](const Json& command) {
+    const Json& selection = command.at("selection");
+    return !statistics::was_asked(selection.value("provenance", ""), selection.value("source", ""));
+  });
+}
+
 void add_costs(Standing& standing) {
   const Entry& entry = *standing.entry;
   const auto cells = static_cast<double>(entry.cells.size()) - standing.failed_cells;
   for (const PlayedCell& cell : entry.cells) {
     if (!cell.failed.empty()) continue;  // what it cost is not known
+    standing.cells_not_asked += not_asked(entry, cell);
     standing.lm_queries += cell.lm_queries / cells;
     standing.lm_tokens += cell.lm_tokens / cells;
     standing.learn_s += cell.learn_s / cells;

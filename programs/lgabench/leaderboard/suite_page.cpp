@@ -196,7 +196,11 @@ Grid details_grid(const NamedTable& table) {
     put(grid, "answers exact", 'r', Span::number(score.is_null() ? "–" : fixed(scenes_exact(score))));
     put(grid, "φ̂ precision", 'r', rate_if_any(s.precision));
     put(grid, "φ̂ recall", 'r', rate_if_any(s.recall));
-    put(grid, "questions", 'r', cost(s.lm_queries));
+    const auto cells = static_cast<int>(s.entry->cells.size()) - s.failed_cells;
+    put(grid, "questions", 'r',
+        s.cells_not_asked == 0       ? cost(s.lm_queries)
+        : s.cells_not_asked == cells ? Span("not asked")
+                                     : Span(fmt::format("{}, in part not asked", amount(s.lm_queries))));
     put(grid, "tokens", 'r', cost(s.lm_tokens));
     put(grid, "training s", 'r', cost(s.learn_s));
     put(grid, "computed", 'l', Span(computed_on(*s.entry)));
@@ -285,7 +289,10 @@ std::vector<NamedTable> named_tables(const std::vector<const Entry*>& table, con
     one.track = track;
     one.ranking = ranking;
     if (track.kind == Track::abstraction) one.undisputed = undisputed_of(setting);
-    one.steps = steps_of(standing, track.answers, one.undisputed);
+    one.steps = steps_of(standing, track, one.undisputed);
+    if (one.steps && setting.demonstrations.size() > 1)
+      for (const int n : setting.demonstrations)
+        if (auto steps = steps_of(standing, track, {}, n)) one.curve.push_back(std::move(*steps));
     one.standings = named(standing, labels);
     mark_more(one.standings);
     if (all.size() > 1) continue;
@@ -357,8 +364,10 @@ document::Document suite_document(const std::string& suite, const std::vector<Na
       if (auto answers = answers_section(table, id + "-answers")) document.sections.push_back(std::move(*answers));
     if (table.standings.empty()) continue;
     if (table.steps) {
-      Section added{id + "-steps", "What labels, language and the truth add"};
+      Section added{id + "-steps", "What labels, the command and the truth add"};
       added.add<Grid>(reading, steps_grid(*table.steps, suite, table.setting.name() + "_steps"));
+      if (!table.curve.empty())
+        added.add<Grid>(reading, curve_grid(table.curve, suite, table.setting.name() + "_curve"));
       added.add<Paragraph>(reading,
                            {{fmt::format("{} Brackets: 95 % intervals over test scenes and training seeds of these "
                                          "scenarios, and over other scenarios as well.",

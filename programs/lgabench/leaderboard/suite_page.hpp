@@ -34,6 +34,7 @@ struct NamedTable {
   Ranking ranking = Ranking::any_policy;
   std::optional<Undisputed> undisputed;  // of the abstraction track
   std::optional<BoardSteps> steps;
+  std::vector<BoardSteps> curve;  // by number of demonstrations, where there are several
 
   /// The place of one of its standings.
   std::size_t row(const NamedStanding& standing) const {

@@ -11,12 +11,22 @@
 
 namespace lgabench::leaderboard {
 
+namespace {
+
+int demonstrations_of(const JsonReader& numbers, const std::string& word) {
+  const bool is_number = !word.empty() && word.size() < 8 && word.find_first_not_of("0123456789") == word.npos;
+  if (!is_number || word.front() == '0') numbers.at(word).fail("a number of demonstrations as its name");
+  return std::stoi(word);
+}
+
+}  // namespace
+
 Tracks read_tracks(const fs::path& board) {
   const fs::path file = board / tracks_file;
   if (!fs::exists(fs::symlink_status(file))) return {};
   const Json json = read_json(file, Links::refused);
   const JsonReader reader(json, file.string());
-  reader.only({"suites", "abstraction", "frozen", "open", "names_read", "persons"});
+  reader.only({"suites", "abstraction", "frozen", "labels", "open", "names_read", "persons"});
   Tracks tracks;
   const auto add = [&tracks](const JsonReader& place, const std::string& preset, Track track) {
     if (!tracks.emplace(preset, std::move(track)).second) place.fail("each preset in one track");
@@ -35,6 +45,15 @@ Tracks read_tracks(const fs::path& board) {
       found->second.answers = presets.at(preset).string();
       if (!std::holds_alternative<RecordedAnswers>(read_answer_source(found->second.answers)))
         presets.at(preset).fail("answers that are shipped");
+    }
+  }
+  if (reader.has("labels")) {
+    const JsonReader presets = reader.at("labels");
+    for (const auto& [preset, ignored] : presets.json().items()) {
+      const auto found = tracks.find(preset);
+      if (found == tracks.end()) presets.at(preset).fail("a preset of the abstraction track");
+      for (const auto& [n, rule] : presets.at(preset).json().items())
+        found->second.labels.emplace(demonstrations_of(presets.at(preset), n), presets.at(preset).at(n).string());
     }
   }
   if (reader.has("open"))

@@ -15,10 +15,11 @@ inline constexpr const char* tracks_file = "tracks.json";
 /// acts; reproduction, every preset that is in no track: likewise, and those with the paper's network by themselves.
 struct Track {
   enum Kind { reproduction, abstraction, open } kind = reproduction;
-  std::vector<std::string> arms{};  // of the abstraction track: where an abstraction decides
-  std::string answers{};            // likewise: whose frozen answers the rows share that are ranked; "": nobody is
-  bool names_read = false;          // of any: whether rows whose names were read from pictures are ranked
-  bool persons = false;             // of any: rows may ask simulated people, and are ranked once they met other persons
+  std::vector<std::string> arms{};      // of the abstraction track: where an abstraction decides
+  std::string answers{};                // likewise: whose frozen answers the rows share that are ranked; "": nobody is
+  bool names_read = false;              // of any: whether rows whose names were read from pictures are ranked
+  std::map<int, std::string> labels{};  // by demonstrations: the rule of labels that was best in development scenes
+  bool persons = false;  // of any: rows may ask simulated people, and are ranked once they met other persons
 };
 
 /// By preset, as "clutter-abstraction".

@@ -67,16 +67,15 @@ std::optional<Change> against_random(const Material& material, const Table& tabl
       fmt::format("headline/{}/{}/{}/{}/{}", table.layout, table.engine, first, column.arm, column.demonstrations));
 }
 
-// "labels add 0.20 [0.14, 0.26], language adds 0.18 [0.15, 0.21] and the truth adds 0.17 [0.15, 0.20]"
-Spans steps_sentence(const std::array<Step, 3>& steps) {
+// "counting labels adds 0.20 [0.14, 0.26], reading the command adds 0.18 [0.15, 0.21] and the true mask adds 0.17
+// [0.15, 0.20]"
+Spans steps_sentence(const Steps& of) {
   Spans spans;
+  const std::vector<Step>& steps = of.steps;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const Interval& interval = steps[i].interval;
-    spans.emplace_back(fmt::format("{}{} {} ",
-                                   i == 0   ? ""
-                                   : i == 1 ? ", "
-                                            : " and ",
-                                   i == 2 ? "the truth" : stages[i + 1].what, i == 0 ? "add" : "adds"));
+    const char* const joined = i == 0 ? "" : i + 1 < steps.size() ? ", " : " and ";
+    spans.emplace_back(fmt::format("{}{} ", joined, of.played[i + 1].stage->adds));
     spans.push_back(Span::number(fixed(steps[i].difference), "", Emphasis::strong));
     spans.push_back(
         Span::number(fmt::format(" [{}, {}]", fixed(interval.low), fixed(interval.high)), "", Emphasis::detail));
@@ -119,14 +118,14 @@ Spans headline(const Material& material, const AboutSuite& about) {
       {" of the episodes"}};
   spans.front().text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(spans.front().text.front())));
   const auto steps = std::find_if(material.summary.steps.begin(), material.summary.steps.end(), [&](const Steps& one) {
-    return first == stages[2].method && one.layout == table.layout && one.engine == table.engine &&
+    return first == command_read && one.layout == table.layout && one.engine == table.engine &&
            one.demonstrations == column->demonstrations;
   });
   bool any = steps != material.summary.steps.end();
   if (any) {
-    spans.emplace_back(
-        fmt::format(". From pixels {} has {}; ", material.styles.name(stages[0].method), fixed(steps->success[0])));
-    for (Span& span : steps_sentence(steps->steps)) spans.push_back(std::move(span));
+    spans.emplace_back(fmt::format(". From pixels {} has {}; ", material.styles.name(steps->played[0].stage->method),
+                                   fixed(steps->played[0].success)));
+    for (Span& span : steps_sentence(*steps)) spans.push_back(std::move(span));
   } else {
     const auto add = [&](const std::optional<Change>& change, const std::string& other) {
       if (!change) return;

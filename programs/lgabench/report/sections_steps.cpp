@@ -1,4 +1,4 @@
-// What labels, language and the truth add.
+// What labels, the command and the truth add.
 #include <fmt/format.h>
 
 #include <lgabench/report/sections.hpp>
@@ -15,16 +15,17 @@ Grid grid_of(const Material& material, const Table& table) {
   grid.align = "lllrrll";
   for (const Steps& one : material.summary.steps) {
     if (one.layout != table.layout || one.engine != table.engine) continue;
-    grid.caption =
-        fmt::format("Success in {}, and what each row adds to the one above it, {}; brackets: 95 % intervals",
-                    table.arm_title(one.arm), table.title());
+    grid.caption = fmt::format(
+        "Success in {}, {} commands, and what each row adds to the one above it, {}; brackets: 95 % intervals",
+        table.arm_title(one.arm), one.commands, table.title());
     const std::string place = fmt::format("/steps/{}/", &one - material.summary.steps.data());
-    for (std::size_t i = 0; i < stages.size(); ++i) {
+    for (std::size_t i = 0; i < one.played.size(); ++i) {
+      const Steps::Played& played = one.played[i];
       Grid::Row row{table.demonstrations_text(one.demonstrations),
-                    {stages[i].what, named(material, stages[i].method),
-                     Span::number(fixed(one.success[i]), fmt::format("{}stages/{}/success", place, i))}};
-      row.cells.back().episodes = one.rows[i];
-      row.cells.back().rate = one.success[i];
+                    {played.stage->what, named(material, played.stage->method),
+                     Span::number(fixed(played.success), fmt::format("{}stages/{}/success", place, i))}};
+      row.cells.back().episodes = played.row;
+      row.cells.back().rate = played.success;
       row.cells.resize(grid.heads.size());
       if (i > 0) {
         const statistics::Step& step = one.steps[i - 1];
@@ -35,7 +36,8 @@ Grid grid_of(const Material& material, const Table& table) {
         };
         row.cells[3] = Span::number(signed_rate(step.difference), own + "difference", Emphasis::strong);
         row.cells[4] = interval(step.interval, own);
-        row.cells[5] = interval(step.over_commands, own + "over_commands/");
+        row.cells[5] = step.over_commands ? interval(*step.over_commands, own + "over_commands/")
+                                          : Spans{statistics::signed_interval(step.over_commands)};
       }
       grid.rows.push_back(std::move(row));
     }
@@ -46,7 +48,7 @@ Grid grid_of(const Material& material, const Table& table) {
 }  // namespace
 
 Section steps(const Material& material) {
-  Section section{"steps", "What labels, language and the truth add"};
+  Section section{"steps", "What labels, the command and the truth add"};
   for (const Table& table : material.summary.tables)
     if (Grid grid = grid_of(material, table); !grid.rows.empty()) section.add(reading, std::move(grid));
   if (section.blocks.empty()) return section;

@@ -166,7 +166,9 @@ Section phi(const Material& material) {
             Spans{phi_number(row, numbers + "size", names->size, 0), " of ",
                   phi_number(row, numbers + "true_size", names->true_size, 0)});
       }
-      put(grid, "queries", 'r', phi_number(row, place + "lm_queries", phi.lm_queries, 0));
+      put(grid, "queries", 'r',
+          was_asked(phi.provenance, phi.source) ? phi_number(row, place + "lm_queries", phi.lm_queries, 0)
+                                                : Span("not asked"));
       put(grid, "a person's seconds", 'r', phi_number(row, place + "human_seconds", phi.human_seconds, 0));
     }
     const std::string wording = fmt::format("{}, of {}: “{}”", row.scenario, phi.source, phi.asked_as);

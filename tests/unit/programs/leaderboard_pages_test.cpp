@@ -259,10 +259,13 @@ TEST(Board, StepsAreOfRowsWithEqualOptionsAndAddUp) {
     entries.back().identity.row.id = entries.back().identity.row.name = id;
     entries.back().identity.row.options = options;
   };
-  const auto steps = [&](const std::string& frozen = "") {
+  const auto steps = [&](const std::string& frozen = "", const std::string& rule = "") {
     std::vector<const Entry*> table;
     for (const Entry& entry : entries) table.push_back(&entry);
-    return steps_of(standings(table), frozen);
+    Track track;
+    track.answers = frozen;
+    if (!rule.empty()) track.labels[5] = rule;
+    return steps_of(standings(table), track);
   };
   add("gcbc_seg", .2, {{"policy", "heat_map"}});
   add("lga", .9, {{"policy", "heat_map"}, {"mask", "binary"}});
@@ -273,13 +276,15 @@ TEST(Board, StepsAreOfRowsWithEqualOptionsAndAddUp) {
   add("taken_features", .6, {{"policy", "heat_map"}, {"mask", "binary"}});
   const auto all = steps();
   ASSERT_TRUE(all);
-  EXPECT_EQ(all->main.arm, "near_4");
-  EXPECT_EQ(all->main.demonstrations, 5);
-  EXPECT_NEAR(all->success[0], .2, .1);
-  EXPECT_NEAR(all->success[2], .9, .1);
-  EXPECT_EQ(all->success[3], 1);
+  EXPECT_EQ(all->column.arm, "near_4");
+  EXPECT_EQ(all->column.demonstrations, 5);
+  ASSERT_EQ(all->played.size(), 4u);
+  EXPECT_NEAR(all->played[0].success, .2, .1);
+  EXPECT_NEAR(all->played[2].success, .9, .1);
+  EXPECT_EQ(all->played[3].success, 1);
+  EXPECT_EQ(all->best, all->played[2].success);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_NEAR(all->steps[i].difference, all->success[i + 1] - all->success[i], 1e-12);
+    EXPECT_NEAR(all->steps[i].difference, all->played[i + 1].success - all->played[i].success, 1e-12);
     EXPECT_LT(all->steps[i].interval.low, all->steps[i].difference);
     EXPECT_GT(all->steps[i].interval.high, all->steps[i].difference);
   }
@@ -287,8 +292,38 @@ TEST(Board, StepsAreOfRowsWithEqualOptionsAndAddUp) {
     add("lga", rate, {{"policy", "heat_map"}, {"mask", "binary"}});
     entries.back().identity.answers = RecordedAnswers{answers};
   }
-  EXPECT_EQ(steps("claude_track")->success[2], 1) << "of rows with equal options that with the frozen answers";
-  EXPECT_NEAR(steps("gpt4_released")->success[2], .3, .1);
+  EXPECT_EQ(steps("claude_track")->played[2].success, 1) << "of rows with equal options that with the frozen answers";
+  EXPECT_NEAR(steps("gpt4_released")->played[2].success, .3, .1);
+  entries.resize(entries.size() - 2);
+
+  // Labels are those of the rule that tracks.json names, if its row is there; the best row may be any.
+  EXPECT_STREQ(steps("", "taken_names")->labels().stage->method, "taken_features");
+  add("taken_names", .8, {{"policy", "heat_map"}, {"mask", "binary"}});
+  EXPECT_STREQ(steps()->labels().stage->method, "taken_features");
+  const auto named = steps("", "taken_names");
+  EXPECT_STREQ(named->labels().stage->method, "taken_names");
+  EXPECT_NEAR(named->read.difference, named->played[2].success - named->labels().success, 1e-12);
+  add("lga_then_taken", .95, {{"policy", "heat_map"}, {"mask", "binary"}});
+  add("stranger", .97, {});
+  const auto both = steps("", "taken_names");
+  ASSERT_EQ(both->played.size(), 5u);
+  EXPECT_NEAR(both->both.difference, both->played[3].success - both->labels().success, 1e-12);
+  EXPECT_GT(both->best, both->played[3].success);
+  EXPECT_LT(both->best, 1);
+}
+
+TEST(Board, QuestionsThatNobodyWasAskedAreNoNumber) {
+  const TemporaryDirectory board;
+  for (const auto& [name, source] : {std::pair("lists", "Claude (Anthropic, 2026)"), {"asked", "GPT-4 (released)"}}) {
+    Entry entry = made_entry(small_setting(), name, .5);
+    for (Json& scenario : entry.phi)
+      scenario[0][0]["selection"].update({{"provenance", "recorded"}, {"source", source}});
+    write_replayed(board.path, entry);
+  }
+  build(board.path);
+  const std::string page = read_file(board.path / "q1.html");
+  EXPECT_SAYS(page, ">not asked<");
+  EXPECT_SAYS(page, ">112<");
 }
 
 TEST(Board, SuitesComeInTheOrderOfTracksAndThoseWithoutARankLast) {

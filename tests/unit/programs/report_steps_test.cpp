@@ -1,5 +1,7 @@
-// What labels, language and the truth add.
+// What labels, the command and the truth add.
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include <lgabench/report/report.hpp>
 #include <lgabench/statistics/steps.hpp>
@@ -48,12 +50,36 @@ TEST(Steps, AreOfTheSameScenesAndAddUp) {
     EXPECT_EQ(summary["rows"][stage["row"].get<std::size_t>()]["success"], stage["success"]);
     EXPECT_LT(step["low"], step["difference"]);
     EXPECT_GT(step["high"], step["difference"]);
+    EXPECT_FALSE(step.contains("over_commands")) << "two commands decide nothing";
   }
+  EXPECT_SAYS(read_file(run.path / "report.html"), "undecided");
   EXPECT_DOUBLE_EQ(steps["steps"][0]["difference"], .25);
   std::string headline;
   for (const document::Span& span : report.document.headline) headline += span.text;
-  EXPECT_SAYS(headline, "LGA succeeds in 0.75 of the episodes. From pixels GCBC-SEG has 0.25; labels add 0.25 [");
-  EXPECT_SAYS(read_file(run.path / "report.html"), "What labels, language and the truth add");
+  EXPECT_SAYS(headline,
+              "LGA succeeds in 0.75 of the episodes. From pixels GCBC-SEG has 0.25; counting labels adds 0.25 [");
+  EXPECT_SAYS(read_file(run.path / "report.html"), "What labels, the command and the truth add");
+}
+
+TEST(Steps, GoOverTheOtherRuleOfLabelsAndBothWhereTheyPlayed) {
+  FabricatedRun run;
+  add_stages(run);
+  add_stage(run, "taken_names", 11);
+  add_stage(run, "lga_then_taken", 16);
+  report::write_report(run.save().path);
+  const Json steps = read_json(run.path / "summary.json").at("steps").at(0);
+  std::vector<std::string> told;
+  for (const Json& stage : steps["stages"]) told.push_back(stage["what"]);
+  EXPECT_EQ(told, (std::vector<std::string>{"pixels", "labels, counted", "labels, by what their names mean",
+                                            "command read", "both", "true mask"}));
+  EXPECT_EQ(steps["steps"].size(), 5u);
+  EXPECT_NEAR(steps["steps"][2]["difference"].get<double>(), .15, 1e-9);
+
+  FabricatedRun other_policy;  // of a row that is not needed: the steps go over it
+  add_stages(other_policy);
+  add_stage(other_policy, "lga_then_taken", 16, "centroid");
+  report::write_report(other_policy.save().path);
+  EXPECT_EQ(read_json(other_policy.path / "summary.json")["steps"][0]["stages"].size(), 4u);
 }
 
 TEST(Steps, NeedFourRowsOfOnePolicyAndTheSameSeeds) {
@@ -74,24 +100,34 @@ TEST(Steps, NeedFourRowsOfOnePolicyAndTheSameSeeds) {
   EXPECT_FALSE(steps_in(lacking));
 }
 
-// Where one command has all of a step and the other one nothing, other commands make it uncertain, other scenes do not.
-TEST(Steps, OverCommandsAreWider) {
-  const auto rates = [](double one, double other) {
-    const std::vector<double> first(50, one), second(50, other);
-    return std::vector<std::vector<std::vector<double>>>{{first, first}, {second, second}};
+// Where half of the commands have all of a step and the others nothing, other commands make it uncertain, other scenes
+// do not.
+TEST(Steps, OverCommandsAreWiderAndUndecidedBelowSix) {
+  const auto rates = [](int commands, double first, double second) {
+    const auto all = [](double rate) { return std::vector<std::vector<double>>(2, std::vector<double>(50, rate)); };
+    std::vector<std::vector<std::vector<double>>> row;
+    for (int i = 0; i < commands; ++i) row.push_back(all(i % 2 == 0 ? first : second));
+    return row;
   };
-  const statistics::StageOutcomes outcomes{{rates(0, 0), rates(1, 0), rates(1, 0), rates(1, 1)}, {1, 1}, true};
-  const auto [labels, language, truth] = statistics::steps_of(outcomes, "test");
-  EXPECT_EQ(labels.difference, .5);
-  EXPECT_GT(labels.interval.low, .4);
-  EXPECT_LT(labels.over_commands.low, .1);
-  EXPECT_GT(labels.over_commands.high, .9);
-  EXPECT_EQ(language.difference, 0);
-  EXPECT_LE(language.interval.low, 0);
-  EXPECT_GE(language.interval.high, 0);
-  EXPECT_EQ(truth.difference, .5);
-  // What a command counts weighs it: 3 of 4 parts are the first's.
-  EXPECT_EQ(statistics::steps_of({outcomes.rates, {3, 1}, true}, "test")[0].difference, .75);
+  const auto steps_over = [&](int commands, std::vector<double> weights = {}) {
+    if (weights.empty()) weights.assign(static_cast<std::size_t>(commands), 1);
+    return statistics::steps_of(
+        {{rates(commands, 0, 0), rates(commands, 1, 0), rates(commands, 1, 0), rates(commands, 1, 1)}, weights, true},
+        "test");
+  };
+  const auto six = steps_over(6);
+  ASSERT_EQ(six.size(), 3u);
+  EXPECT_EQ(six[0].difference, .5);
+  EXPECT_GT(six[0].interval.low, .4);
+  ASSERT_TRUE(six[0].over_commands);
+  EXPECT_NEAR(six[0].over_commands->low, .5 - 2.5706 * std::sqrt(.3 / 6), 1e-3) << "Student's, with five degrees";
+  EXPECT_NEAR(six[0].over_commands->high, .5 + 2.5706 * std::sqrt(.3 / 6), 1e-3);
+  EXPECT_EQ(six[1].difference, 0);
+  EXPECT_EQ(six[1].over_commands->low, six[1].interval.low) << "commands that all agree do not make certain";
+  EXPECT_EQ(six[1].over_commands->high, six[1].interval.high);
+  for (const statistics::Step& step : steps_over(5)) EXPECT_FALSE(step.over_commands);
+  EXPECT_EQ(statistics::signed_interval(steps_over(5)[0].over_commands), "undecided");
+  EXPECT_EQ(steps_over(2, {3, 1})[0].difference, .75) << "what a command counts weighs it";
 }
 
 }  // namespace
