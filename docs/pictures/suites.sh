@@ -26,7 +26,7 @@ for arm in seen new seen_near new_near; do
   draw something_to_drink_water_out_of_members_2 ${arm}_members_2 25% continuous few_members
   mv something_to_drink_water_out_of_members_2-${arm}_members_2.png few_members-$arm.png
 done
-for arm in new_decisive_near new_other_near; do
+for arm in new_decisive_near new_other_near seen_matched new_decisive_matched; do
   draw something_to_drink_water_out_of_members_1 ${arm}_members_1 25% continuous few_members
   mv something_to_drink_water_out_of_members_1-${arm}_members_1.png few_members-$arm.png
 done

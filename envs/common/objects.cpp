@@ -8,6 +8,7 @@
 
 #include <common/shapes.hpp>
 #include <lgabench/core/error.hpp>
+#include <lgabench/core/shipped.hpp>
 
 namespace lgabench::common {
 namespace {
@@ -151,6 +152,22 @@ const std::vector<std::string>& object_types() {
     return all;
   }();
   return types;
+}
+
+double covered_area_m2(const std::string& type) {
+  static MadeOnce<double> areas;
+  return areas.of(type, [&type] {
+    constexpr int cells = 96;  // along each side of the bounding box: polygons may overlap
+    const ObjectModel& model = object_model(type);
+    int covered = 0;
+    for (int i = 0; i < cells * cells; ++i) {
+      const Vec2 point{((i % cells + .5) / cells - .5) * model.size_m.x,
+                       ((i / cells + .5) / cells - .5) * model.size_m.y};
+      covered += std::any_of(model.outline.begin(), model.outline.end(),
+                             [point](const Polygon& polygon) { return contains(polygon, point); });
+    }
+    return model.size_m.x * model.size_m.y * covered / (cells * cells);
+  });
 }
 
 void expect_drawable(const std::vector<VisibleObject>& objects) {

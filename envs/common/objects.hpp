@@ -55,6 +55,9 @@ struct VisibleObject {
 /// that is not finite.
 void expect_drawable(const std::vector<VisibleObject>& objects);
 
+/// The area of the table that a type's usual shape covers, seen from above.
+double covered_area_m2(const std::string& type);
+
 /// Outlines moved to a pose on the table.
 std::vector<Polygon> placed_outline(const ObjectModel& model, Vec2 position_m, double yaw_rad);
 

@@ -30,7 +30,11 @@ NearMiss read_near_miss(const JsonReader& reader, const Scenario& scenario) {
   NearMiss sets;
   if (reader.json() == Json(true)) return sets;
   if (!reader.json().is_object()) reader.fail("true, or an object");
-  reader.only({"object_types", "textures", "alike"});
+  reader.only({"object_types", "textures", "alike", "size"});
+  if (reader.has("size")) {
+    sets.size_matched = reader.at("size").string() == "matched";
+    if (!sets.size_matched) reader.at("size").fail("\"matched\"");
+  }
   if (reader.has("alike") && !(sets.alike = reader.at("alike").boolean())) reader.at("alike").fail("true");
   if (sets.alike && reader.has("textures")) reader.at("textures").fail("no such member beside \"alike\"");
   if (reader.has("object_types"))

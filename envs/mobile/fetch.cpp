@@ -122,6 +122,7 @@ FetchContent read_fetch_content(const Scenario& scenario, const JsonReader* scen
   if (scenes->has("near_miss") && scenes->at("near_miss").json() != Json(false)) {
     const JsonReader reader = scenes->at("near_miss");
     content.near_miss = read_near_miss(reader, scenario);
+    if (content.near_miss->size_matched) reader.at("size").fail("no such member in this environment");
     if (training && scenario.as_method_asks)  // else an answer would decide what is near
       reader.fail("\"as_method_asks\": false beside it");
   }

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
+#include <common/objects.hpp>
 #include <lgabench/core/environments.hpp>
 
 #include <lgabench/core/contains.hpp>
@@ -69,6 +71,20 @@ std::vector<Features> attempt(const Features& target, const LeftOut& types, cons
 }
 
 }  // namespace
+
+std::vector<double> matched_scales(const std::string& type) {
+  constexpr double area_m2 = .008;  // what compact types cover at .09 in width
+  std::vector<double> scales;       // few, since an engine loads a model for each
+  for (const double share : {.93, 1., 1.07})
+    scales.push_back(std::round(1000 * std::sqrt(share * area_m2 / common::covered_area_m2(type))) / 1000);
+  return scales;
+}
+
+bool fits_matched(const std::string& type, double widest_m) {
+  const std::vector<double> scales = matched_scales(type);
+  const Vec2 size = common::object_model(type).size_m;
+  return scales.front() >= 1. / 3 && scales.back() <= 3 && scales.back() * std::max(size.x, size.y) <= widest_m + 1e-9;
+}
 
 std::vector<Features> near_misses(const NearMissRequest& r, int count, RandomStream& random) {
   constexpr int tries = 200;

@@ -30,4 +30,10 @@ struct NearMissRequest {
 /// @throws NothingToShow where the command leaves out too little for that many.
 std::vector<Features> near_misses(const NearMissRequest& request, int count, RandomStream& random);
 
+/// Scales at which each type covers the same area, but for 15 % between the first and the last: those that objects of a
+/// scene of matched sizes have.
+std::vector<double> matched_scales(const std::string& type);
+/// Whether the type is then at most so wide, and from a third to three times its usual size.
+bool fits_matched(const std::string& type, double widest_m);
+
 }  // namespace lgabench::tabletop

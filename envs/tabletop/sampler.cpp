@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include <common/changed.hpp>
@@ -145,6 +146,15 @@ std::vector<Features> sample_unheard_decoys(const Request& request, const Featur
   return decoys;
 }
 
+// Each object is drawn alike, the target too: who takes the largest, or what is as large as what was shown, finds the
+// target by chance.
+void match_sizes(std::vector<SceneObject>& objects, RandomStream& random) {
+  for (SceneObject& object : objects) {
+    const std::vector<double> scales = matched_scales(object.object_type);
+    object.scale = scales[random.below(static_cast<std::uint32_t>(scales.size()))];
+  }
+}
+
 // What distractors stay out of.
 std::vector<const FeatureSet*> excluded_sets(const Request& request) {
   std::vector<const FeatureSet*> excluded;
@@ -171,8 +181,10 @@ struct Types {
 Types types_beside(const Request& request, const Features& target) {
   const bool earliest = request.content.later_letters && is_letter(target.type);
   Types types;
+  const bool matched = request.content.near_miss && request.content.near_miss->size_matched;
   for (const std::string& type : request.scenario.space.object_types) {
-    const bool later = is_letter(type) && type > target.type, shown = can_show(type, request.widest_m());
+    const bool later = is_letter(type) && type > target.type;
+    const bool shown = can_show(type, request.widest_m()) && (!matched || fits_matched(type, request.widest_m()));
     types.allowed.push_back(shown && (!earliest || !is_letter(type) || later));
     if (earliest && shown && later) types.later_letters.push_back(type);
   }
@@ -213,9 +225,15 @@ std::vector<Features> sample_misleading(const Request& request, const Features& 
   if (content.unheard_decoys) return sample_unheard_decoys(request, target, allowed, count, random);
   if (!content.decoys.empty()) return sample_decoys(request, excluded, allowed, count, random);
   if (!content.near_miss) return {};
-  NearMissRequest near{request.meant.target.product(), target, {}, space.textures, *content.near_miss, {}};
+  std::vector<std::string> types;
   for (std::size_t type = 0; type < allowed.size(); ++type)
-    if (allowed[type]) near.types.push_back(space.object_types[type]);
+    if (allowed[type]) types.push_back(space.object_types[type]);
+  common::NearMiss sets = *content.near_miss;
+  const auto cannot_match = [&types](const std::string& type) { return !contains(types, type); };
+  if (sets.size_matched)  // where none of those called near can be as large as the target, others are
+    sets.object_types.erase(std::remove_if(sets.object_types.begin(), sets.object_types.end(), cannot_match),
+                            sets.object_types.end());
+  NearMissRequest near{request.meant.target.product(), target, types, space.textures, sets, {}};
   near.may_be = [&excluded](const Features& one) {
     return std::none_of(excluded.begin(), excluded.end(),
                         [&one](const FeatureSet* set) { return set->contains(one.type, one.texture); });
@@ -274,7 +292,7 @@ std::vector<SceneObject> sample_choice(const Request& request, RandomStream rand
 
 // Streams that go on where the same scene is drawn again.
 struct Draws {
-  RandomStream targets, distractors;
+  RandomStream targets, distractors, sizes;
 };
 
 std::vector<SceneObject> sample_objects(const Request& request, const Streams& stream, Draws& draws) {
@@ -298,6 +316,11 @@ std::vector<SceneObject> sample_objects(const Request& request, const Streams& s
           fmt::format("unheard_decoys: expected that each unseen command of scenario \"{}\" means "
                       "what no set of \"decoys\" holds",
                       scenario.id));
+  const bool matched = content.near_miss && content.near_miss->size_matched;
+  for (int n = 0; matched && !fits_matched(target.type, request.widest_m()); target = draw_target())
+    if (++n == 200)
+      throw NothingToShow(
+          fmt::format("near_miss: expected a target of scenario \"{}\" whose size can be matched", scenario.id));
   std::vector<SceneObject> objects{{target.type, target.texture, role::target, {}, 0, 0}};
   if (by_choice) {
     const std::vector<SceneObject> chosen = sample_choice(request, stream("choice"));
@@ -306,6 +329,7 @@ std::vector<SceneObject> sample_objects(const Request& request, const Streams& s
   }
   for (const Features& d : sample_distractors(request, target, draws.distractors))
     objects.push_back({d.type, d.texture, role::distractor, {}, 0, 0});
+  if (matched) match_sizes(objects, draws.sizes);
   if (second) {
     FeatureSet from;
     if (meant.second) from = *meant.second;
@@ -355,7 +379,7 @@ std::vector<Features> members_to_show(const Scenario& scenario, const SceneReque
 std::vector<SceneObject> placed_objects(const Request& request, const Streams& stream) {
   constexpr int draws = 20;
   const auto& [scenario, task, layout, content, training, meant, of_members] = request;
-  Draws random{stream("target"), stream("distractors")};
+  Draws random{stream("target"), stream("distractors"), stream("sizes")};
   for (int draw = 1;; ++draw) {
     std::vector<SceneObject> objects = sample_objects(request, stream, random);
     const std::size_t sampled = objects.size();
@@ -386,11 +410,16 @@ std::vector<Features> members_of(const Scenario& scenario, const std::string& la
                                  std::uint64_t training_seed) {
   const Layout layout = find_layout(find_task(scenario.task), layout_id);
   double widest_m = std::min({layout.widest_m, layout.widest_target_m, content_of(*scenario.train).widest_m()});
-  for (const Arm& arm : scenario.tests) widest_m = std::min(widest_m, content_of(*arm.scenes).widest_m());
+  bool matched = false;
+  for (const Arm& arm : scenario.tests) {
+    const Content& content = content_of(*arm.scenes);
+    widest_m = std::min(widest_m, content.widest_m());
+    matched = matched || (content.near_miss && content.near_miss->size_matched);
+  }
   const ScenarioCommand& meant = scenario.commands.at(static_cast<std::size_t>(command));
   std::vector<Features> all, drawn;
   for (const std::string& type : meant.truth.target.product().object_types)
-    if (can_show(type, widest_m))
+    if (can_show(type, widest_m) && (!matched || fits_matched(type, widest_m)))
       for (const std::string& texture : meant.truth.target.product().textures) all.push_back({type, texture});
   RandomStream random(fmt::format("members/{}/{}/{}", meant.utterance, layout_id, training_seed));
   for (const int i : random.permutation(static_cast<int>(all.size())))

@@ -13,6 +13,7 @@
 #include <lgabench/core/error.hpp>
 #include <tabletop/content.hpp>
 #include <tabletop/judge.hpp>
+#include <tabletop/near_misses.hpp>
 #include <tabletop/raster.hpp>
 #include <tabletop/renderer.hpp>
 #include <tabletop/sampler.hpp>
@@ -24,7 +25,7 @@ namespace {
 class Tabletop final : public Environment {
  public:
   Tabletop(std::unique_ptr<PhysicsWorld> world, const FeatureSpace& space, int bodies,
-           const std::vector<BodyVariant>& variants)
+           const std::vector<BodyVariant>& variants, bool matched_sizes)
       : world_(std::move(world)) {
     std::vector<BodyModel> models;
     const auto add = [&](const std::string& type, bool fixed, const BodyVariant& variant) {
@@ -36,6 +37,12 @@ class Tabletop final : public Environment {
       for (const std::string& type : space.object_types) add(type, false, variant);
       if (models_.count({goal_type, true, 1, 1, 1}) == 0) add(goal_type, true, {});
     }
+    for (const std::string& type : space.object_types)
+      for (const double scale : matched_sizes ? matched_scales(type) : std::vector<double>()) {
+        BodyVariant variant;
+        variant.scale = scale;
+        if (models_.count({type, false, scale, 1, 1}) == 0) add(type, false, variant);
+      }
     world_->load(models, bodies);
   }
 
@@ -153,6 +160,13 @@ class Tabletop final : public Environment {
   Motion last_;                         // what step() carried out
   Failure went_wrong_ = failure::none;  // in a motion since the scene's beginning
 };
+
+bool matches_sizes(const Scenario& scenario) {
+  const auto matched = [](const Content& content) { return content.near_miss && content.near_miss->size_matched; };
+  return matched(content_of(*scenario.train)) ||
+         std::any_of(scenario.tests.begin(), scenario.tests.end(),
+                     [&matched](const Arm& arm) { return matched(content_of(*arm.scenes)); });
+}
 
 // More than usual only where a scene can hold more: their number shows in an engine's last digits.
 int bodies_of(const Scenario& scenario) {
@@ -275,7 +289,8 @@ class TabletopType final : public EnvironmentType {
     return bodies == most_bodies ? "" : fmt::format("{} bodies", bodies);
   }
   std::unique_ptr<Environment> make(std::unique_ptr<PhysicsWorld> engine, const Scenario& scenario) const override {
-    return make_environment(std::move(engine), scenario.space, bodies_of(scenario), body_variants(scenario));
+    return make_environment(std::move(engine), scenario.space, bodies_of(scenario), body_variants(scenario),
+                            matches_sizes(scenario));
   }
 
  private:
@@ -289,8 +304,9 @@ class TabletopType final : public EnvironmentType {
 }  // namespace
 
 std::unique_ptr<Environment> make_environment(std::unique_ptr<PhysicsWorld> world, const FeatureSpace& space,
-                                              int bodies, const std::vector<BodyVariant>& variants) {
-  return std::make_unique<Tabletop>(std::move(world), space, bodies, variants);
+                                              int bodies, const std::vector<BodyVariant>& variants,
+                                              bool matched_sizes) {
+  return std::make_unique<Tabletop>(std::move(world), space, bodies, variants, matched_sizes);
 }
 
 }  // namespace lgabench::tabletop

@@ -13,10 +13,10 @@ namespace lgabench::tabletop {
 /// In one scene, unless a scenario has more distractors than two; what the engine is told.
 constexpr int most_bodies = 6;
 
-/// Takes the engine, loads every object type of `space` into it once, as each of the variants, and plays scenes on it,
-/// of as many bodies.
+/// Takes the engine, loads every object type of `space` into it once, as each of the variants, and with `matched_sizes`
+/// at matched_scales() too, and plays scenes on it, of as many bodies.
 std::unique_ptr<Environment> make_environment(std::unique_ptr<PhysicsWorld> world, const FeatureSpace& space,
-                                              int bodies = most_bodies,
-                                              const std::vector<BodyVariant>& variants = {{}});
+                                              int bodies = most_bodies, const std::vector<BodyVariant>& variants = {{}},
+                                              bool matched_sizes = false);
 
 }  // namespace lgabench::tabletop

@@ -10,6 +10,7 @@
 #include <common/objects.hpp>
 #include <lgabench/core/hash.hpp>
 #include <tabletop/content.hpp>
+#include <tabletop/near_misses.hpp>
 #include <tabletop/sampler.hpp>
 #include <tabletop/task.hpp>
 
@@ -631,6 +632,46 @@ TEST(TestScenes, OfATrainingSeedAreItsOwnAndSharedOnesStay) {
   EXPECT_EQ(hashes.size(), 4u);
   request.split = "dev";
   EXPECT_THROW(sample_scene(scenario, request, 0), InputError) << "test scenes alone";
+}
+
+// Who takes the largest, or what is as large as what was shown, finds the target by chance.
+TEST(Sampler, NearMissesOfMatchedSizeCoverAsMuchAsTheTarget) {
+  for (const char* id : {"something_to_drink_water_out_of", "vowel_with_multiple_colors", "plain_colored_vessel"}) {
+    Json json = load_scenario(id).json;
+    json["tests"] = Json::array({{{"arm", "test"}, {"distractors", {4, 4}}, {"near_miss", {{"size", "matched"}}}}});
+    const Scenario scenario = read_scenario(json, id);
+    const int scenes = amount(300, 1000);
+    int largest = 0;
+    for (int i = 0; i < scenes; ++i) {
+      const Scene scene = sample_scene(scenario, test_request("continuous"), i);
+      std::vector<double> areas;
+      const double of_target = [&] {
+        const SceneObject& target = *scene.find(role::target);
+        return target.scale * target.scale * common::covered_area_m2(target.object_type);
+      }();
+      for (const SceneObject& object : scene.objects) {
+        if (object.role == role::goal) continue;
+        areas.push_back(object.scale * object.scale * common::covered_area_m2(object.object_type));
+        const std::vector<double> scales = matched_scales(object.object_type);
+        EXPECT_EQ(std::count(scales.begin(), scales.end(), object.scale), 1) << "a model for each scale";
+        EXPECT_TRUE(fits_matched(object.object_type, .18)) << object.object_type;
+      }
+      ASSERT_EQ(areas.size(), 5u);
+      const auto [least, most] = std::minmax_element(areas.begin(), areas.end());
+      EXPECT_LE(*most / *least, 1.16);
+      largest += of_target > *most * .98;
+    }
+    EXPECT_NEAR(largest / static_cast<double>(scenes), 1. / 3, .12) << id << ": of the largest of three sizes";
+  }
+}
+
+TEST(Objects, CoverWhatTheirOutlineCovers) {
+  EXPECT_NEAR(common::covered_area_m2("ring") / common::covered_area_m2("round"), .6, .35) << "it has a hole";
+  for (const std::string& type : common::object_types()) {
+    const Vec2 box = object_model(type).size_m;
+    EXPECT_GT(common::covered_area_m2(type), .1 * box.x * box.y) << type;
+    EXPECT_LE(common::covered_area_m2(type), box.x * box.y) << type;
+  }
 }
 
 }  // namespace

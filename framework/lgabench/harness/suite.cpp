@@ -114,16 +114,16 @@ void read_changes(const JsonReader& reader, Suite& suite) {
     return [what, &known](const JsonReader& value) { return name_among(value, what, known); };
   };
   const std::vector<std::string> scenarios = scenario_ids(), files = shipped_names("answers");
-  std::vector<std::string> with_variants = own;
+  std::vector<std::string> with_variants = played;
   if (reader.has("variants"))
-    for (const std::string& scenario : own)
+    for (const std::string& scenario : played)
       for (const std::string& variant : names_of(reader.at("variants").json()))
         with_variants.push_back(fmt::format("{}_{}", scenario, variant));
   if (reader.has("arms")) suite.arms = arms_of(reader.at("arms"), with_variants);
   if (reader.has("only_arms")) suite.only_arms = reader.at("only_arms").boolean();
   if (suite.only_arms && suite.arms.empty()) reader.at("only_arms").fail("\"arms\" beside it");
   if (reader.has("train")) suite.train = object_of(reader.at("train"));
-  if (reader.has("near_miss")) suite.near_miss = members_of(reader.at("near_miss"), own, json_of);
+  if (reader.has("near_miss")) suite.near_miss = members_of(reader.at("near_miss"), played, json_of);
   if (reader.has("scenes")) suite.scenes = members_of(reader.at("scenes"), played, object_of);
   if (reader.has("paraphrases"))
     suite.paraphrases = members_of(reader.at("paraphrases"), own, named("scenario", scenarios));

@@ -82,8 +82,12 @@ void add_arms(const Suite& suite, const std::vector<SuiteArm>& arms, const Desig
     Json added = first;
     added.update(arm.members);
     added.update(scenes);
-    if (near_miss != suite.near_miss.end() && arm.members.value("near_miss", Json()) == Json(true))
+    const Json near = arm.members.value("near_miss", Json());
+    const bool sized = near.is_object() && near.contains("size");  // which says nothing of what they are
+    if (near_miss != suite.near_miss.end() && (near == Json(true) || sized)) {
       added["near_miss"] = near_miss->second;
+      if (sized) added["near_miss"]["size"] = near.at("size");
+    }
     tests.push_back(std::move(added));
   }
 }
