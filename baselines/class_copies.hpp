@@ -109,7 +109,10 @@ class ClassCopies {
     const int count = std::max(1, static_cast<int>(object.pixels.size()));
     object.row /= count;
     object.column /= count;
-    for (Pixel& pixel : object.pixels) pixel.row -= object.row, pixel.column -= object.column;
+    for (Pixel& pixel : object.pixels) {
+      pixel.row -= object.row;
+      pixel.column -= object.column;
+    }
     return object;
   }
   static int squares(const Pixel& a, const Pixel& b) {

@@ -288,7 +288,10 @@ class Diffusion : public CloningMethod {
     const std::string input = options.at("input");
     PolicyInputs inputs{{Inputs::Picture::mask}};
     if (input == "rgb") inputs = {{Inputs::Picture::rgb}, Inputs::Text::utterance};
-    if (input == "object_mask") inputs = {{Inputs::Picture::segmentation}}, inputs.left_out = "pallet";
+    if (input == "object_mask") {
+      inputs = {{Inputs::Picture::segmentation}};
+      inputs.left_out = "pallet";
+    }
     inputs.signed_mask = true;
     inputs.mask_size = inputs.rgb_size = {32, 64};
     return inputs;

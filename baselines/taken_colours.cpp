@@ -67,7 +67,10 @@ class ActsOnTheLikest : public Policy {
       if (one.pixels == 0 || is_place(one.object_type)) continue;
       const Colours colours = colours_of(observation, one.id);
       for (const Colours& taken : taken_[instruction.utterance])
-        if (const double like = likeness(colours, taken); like > most) most = like, likest = one.id;
+        if (const double like = likeness(colours, taken); like > most) {
+          most = like;
+          likest = one.id;
+        }
     }
     Observation seen = observation;
     Instruction told = instruction;

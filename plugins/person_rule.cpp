@@ -30,7 +30,8 @@ std::vector<bool> features_of(const Standing& scene, std::size_t one, const draw
     all.push_back(
         std::count(look.textures.begin(), look.textures.end(), grammar.space.textures[scene.things[one].texture]) > 0);
   drawn::PersonRule any;
-  any.types.set(), any.textures.set();
+  any.types.set();
+  any.textures.set();
   for (const auto& place : grammar.places) {
     any.place = place.first;
     all.push_back(drawn::taken_by(any, scene.things, scene.goal).front() == one);
@@ -200,9 +201,12 @@ class PersonRuleMethod final : public CloningMethod {
       } else {
         double most = -1;
         for (std::size_t i = 0; i < open.size(); ++i) {
-          const double told =
+          const double learnt =
               belief.expected_bits(scenes[open[i].scene], open[i].one, errs) / (open[i].one ? 1 : price_of_which);
-          if (told > most + 1e-9) most = told, best = i;
+          if (learnt > most + 1e-9) {
+            most = learnt;
+            best = i;
+          }
         }
       }
       const Asked asked = open[best];

@@ -13,7 +13,7 @@ namespace lgabench::common {
 inline double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 
-/// From far away, the same everywhere.
+/// Light from far away, the same everywhere.
 struct Light {
   Vec3 towards = usual_light;
   double climb = 1 / towards.z;  // of the way to the light, for each metre of height

@@ -37,7 +37,8 @@ struct ObjectModel {
 /// volume, within the limits of all types. @throws InputError for an unknown type.
 const ObjectModel& object_model(const std::string& type, double scale = 1);
 
-/// Likewise, where things stand as they would in life: bottles, cans and boxes upright, all others as object_model().
+/// object_model() of a thing that stands as it would in life: bottles, cans and boxes upright, all others as
+/// object_model().
 const ObjectModel& standing_model(const std::string& type, double scale = 1);
 
 /// All object types that can be made, in the order of the household space, which begins with the tabletop's.

@@ -26,7 +26,7 @@ std::vector<Polygon> placed(const std::vector<Polygon>& polygons, Vec2 position_
 /// The smallest distance in metres between two unions of convex polygons; 0 where they overlap, infinity where one of
 /// them has no polygon.
 double distance(const std::vector<Polygon>& a, const std::vector<Polygon>& b);
-/// Likewise from a point; 0 within.
+/// The distance in metres from a point to the union; 0 within it.
 double distance(Vec2 point, const std::vector<Polygon>& polygons);
 
 }  // namespace lgabench::common

@@ -17,7 +17,7 @@ Scene without_objects(const Scenario& scenario, const SceneRequest& request, int
 /// A scene's random streams by what they are for. A value.
 using Streams = std::function<RandomStream(const std::string& purpose)>;
 
-/// Those of scene number `index`. The arm is no part of them: arms are compared scene by scene.
+/// The streams of scene number `index`. The arm is no part of them: arms are compared scene by scene.
 Streams streams_of(const Scenario& scenario, const SceneRequest& request, int index);
 
 /// Any of them, with equal odds. @pre there is one.

@@ -8,7 +8,7 @@
 
 namespace lgabench::common {
 
-/// Of which features near misses are made first, before others that the command does not mean.
+/// Features that near misses are made of first, before others that the command does not mean.
 struct NearMiss {
   std::vector<std::string> object_types, textures;  // empty: any
   bool alike = false;                               // textures with the target's colours in another pattern

@@ -18,7 +18,7 @@ const std::vector<Shape>& shapes();
 /// What the household space has beyond the tabletop's, in its order.
 const std::vector<Shape>& household_shapes();
 
-/// Those of the household space that standing_model() shows upright.
+/// Shapes of the household space that standing_model() shows upright.
 const std::vector<Shape>& standing_shapes();
 
 }  // namespace lgabench::common

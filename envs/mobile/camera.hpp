@@ -24,7 +24,7 @@ class Camera {
         pitch(pitch_rad),
         across(across_rad) {}
 
-  /// In that view; in the usual one this camera, to the bit.
+  /// The camera in that view; in the usual one this camera, to the bit.
   Camera in(const View& view) const {
     return {eye + view.shift_m.x * right + view.shift_m.y * down,
             yaw + view.turn_rad.x,
@@ -36,7 +36,8 @@ class Camera {
 
   /// Metres along the optical axis.
   double depth(Vec3 point) const { return common::dot(point - eye, forward); }
-  /// In pixels: x its row, y its column, whole numbers at pixels' centres. @pre depth(point) > 0
+  /// Where the point is seen, in pixels: x is its row, y its column, whole numbers at pixels' centres. @pre
+  /// depth(point) > 0
   Vec2 at(Vec3 point) const {
     const Vec3 way = point - eye;
     const double scale = focal_px / common::dot(way, forward);

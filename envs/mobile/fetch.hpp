@@ -34,7 +34,7 @@ FetchContent read_fetch_content(const Scenario& scenario, const JsonReader* scen
 /// in one share the rest. @throws as EnvironmentType::sample(); Error where no room is found.
 Scene sample_fetch(const Scenario& scenario, const SceneRequest& request, int index);
 
-/// Beside the target, of objects that are no receivers.
+/// So many objects stand beside the target at most, receivers apart.
 constexpr int most_fetch_others = 7;
 
 /// EnvironmentType::with_distractors(), in scenes of the task.

@@ -9,7 +9,8 @@
 
 namespace lgabench::mobile {
 
-/// On the table, at most; an engine is told four more, the furniture. In `fetch` with three receivers among them.
+/// So many objects stand on the table at most, in `fetch` with three receivers among them. An engine is told four more,
+/// the furniture.
 constexpr int most_objects = 6, most_fetch_objects = 11;
 
 namespace failure {

@@ -18,10 +18,10 @@ inline bool operator==(const Features& a, const Features& b) { return a.type == 
 const std::vector<Features>& natural_objects();
 const std::vector<Features>& natural_receivers();
 
-/// Those of them that a distribution holds.
+/// Of `all`, the features that a distribution holds.
 std::vector<Features> held(const std::vector<Features>& all, const FeatureSet& distribution);
 
-/// Those that share one feature with it, and not the other.
+/// Of `some`, those that share one feature with `one`, and not the other.
 std::vector<Features> like(const std::vector<Features>& some, const Features& one);
 
 /// One of them: a type, with equal odds, then one of its textures. @pre there is one.

@@ -12,10 +12,10 @@ namespace lgabench::mobile {
 /// one probability is wrong, in the same way, at every higher one.
 Observation perceive(Observation seen, double caption_error, RandomStream stream);
 
-/// Likewise in scenes of the task fetch, in light that is dim and coloured: the picture as well, for whoever looks at
-/// it. A caption's type is wrong with up to six times `caption_error`, the more the fewer pixels it has and the more of
-/// its border lies on other things; its texture with up to three times that, the more the dimmer and the more coloured
-/// the light is. A texture has no other word for what it cannot tell: it is right then.
+/// perceive() in scenes of the task fetch, whose light is dim and coloured. The picture is dim and coloured too. A
+/// caption's type is wrong with up to six times `caption_error`, the more the fewer pixels it has and the more of its
+/// border lies on other things; its texture with up to three times that, the more the dimmer and the more coloured the
+/// light is. A texture has no other word for what it cannot tell: it is right then.
 Observation perceive_in_bad_light(Observation seen, double caption_error, RandomStream stream);
 
 }  // namespace lgabench::mobile

@@ -36,7 +36,7 @@ class MujocoPool {
   /// on the models' indices first, then on their order: sums over contacts go along the bodies.
   /// @throws EngineError for a model that is not there, or too many; none is given out then.
   void give_out(const std::vector<int>& models);
-  /// In the order that was asked for.
+  /// The bodies that give_out() gave, in the order that was asked for.
   const std::vector<MujocoBody>& given_out() const { return given_out_; }
 
   /// Holds the given out fixed bodies, whose poses `data` knows, where they are: to MuJoCo a mocap body moves at any

@@ -131,7 +131,10 @@ std::optional<BodyPhysics> MujocoWorld::physics(int body) const {
       mjtNum corner[3];
       mju_mulMatVec3(corner, data_->geom_xmat + 9 * g, local);
       mju_addTo3(corner, data_->geom_xpos + 3 * g);
-      for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], corner[k]), high[k] = std::max(high[k], corner[k]);
+      for (int k = 0; k < 3; ++k) {
+        low[k] = std::min(low[k], corner[k]);
+        high[k] = std::max(high[k], corner[k]);
+      }
     }
   }
   return BodyPhysics{{low[0], low[1], low[2]},

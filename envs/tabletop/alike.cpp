@@ -78,7 +78,10 @@ std::optional<std::vector<Features>> sharing_alike(const std::vector<Features>& 
     Search search{candidates, random};
     std::vector<Features> all = there;
     search.extend(all, 0, count.first + more);
-    if (search.best > best.best) best.best = search.best, best.chosen = search.chosen;
+    if (search.best > best.best) {
+      best.best = search.best;
+      best.chosen = search.chosen;
+    }
   }
   if (best.chosen.empty()) return std::nullopt;
   return std::vector<Features>(best.chosen.begin() + static_cast<std::ptrdiff_t>(there.size()), best.chosen.end());

@@ -45,7 +45,7 @@ struct Content : SceneContent {
   std::vector<std::string> choice;
   /// Others are of these sets, each of another one as far as they go: what further commands mean. Empty: of any.
   std::vector<FeatureSet> decoys;
-  /// Of an arm with unseen commands: targets and decoys are in none of `decoys`, and decoys are what other unseen
+  /// In an arm with unseen commands, targets and decoys are in none of `decoys`, and decoys are what other unseen
   /// commands mean, each of a type of its own, in textures that the given command may mean, so that neither tells.
   bool unheard_decoys = false;
   std::optional<Cue> cue;

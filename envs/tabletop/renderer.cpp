@@ -235,8 +235,8 @@ Observation Renderer::render(const std::vector<VisibleObject>& objects, Ground g
   for (const VisibleObject& object : objects) placed.push_back(impl_->place(object));
   if (shadows) give_shadow_bits(placed);
 
-  const std::optional<Table> own = view == View() ? std::nullopt : std::optional<Table>({ground, view});
-  const Table& empty = own ? *own : usual_table(ground);
+  const std::optional<Table> in_view = view == View() ? std::nullopt : std::optional<Table>({ground, view});
+  const Table& empty = in_view ? *in_view : usual_table(ground);
   Observation seen{Workspace::picture, empty.in_light, std::vector<std::uint8_t>(pixels), {}};
   if (shadows) seen.shadows.resize(pixels);
   for (const Placed& object : placed) impl_->clear(object.area);

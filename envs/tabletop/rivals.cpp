@@ -45,15 +45,17 @@ class Table {
   // In random order: what is placed later stands farther out.
   bool place(std::vector<Thing>& things) {
     ++placements_;
-    const auto own = [this](const std::string& purpose) { return stream_(fmt::format("{}/{}", purpose, placements_)); };
-    const std::vector<int> order = own("order").permutation(static_cast<int>(things.size()));
+    const auto stream_for = [this](const std::string& purpose) {
+      return stream_(fmt::format("{}/{}", purpose, placements_));
+    };
+    const std::vector<int> order = stream_for("order").permutation(static_cast<int>(things.size()));
     std::vector<SceneObject> placed;
     for (const int i : order) {
       const Thing& thing = things[static_cast<std::size_t>(i)];
       placed.push_back({space_.object_types[thing.type], space_.textures[thing.texture], role::distractor, {}, 0, 0});
     }
     try {
-      task_.place(layout_, content_, placed, own);
+      task_.place(layout_, content_, placed, stream_for);
     } catch (const NoRoom&) {
       return false;
     }

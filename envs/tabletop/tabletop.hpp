@@ -10,7 +10,7 @@
 
 namespace lgabench::tabletop {
 
-/// In one scene, unless a scenario has more distractors than two; what the engine is told.
+/// So many bodies a scene has at most, which the engine is told, unless a scenario has more distractors than two.
 constexpr int most_bodies = 6;
 
 /// Takes the engine, loads every object type of `space` into it once, as each of the variants, and with `matched_sizes`

@@ -97,7 +97,8 @@ Picture::Picture(const Observation& seen)
   cv::Sobel(lightness_of, gy, CV_16S, 0, 1);
   std::array<int, 256> counts{};
   std::array<cv::Point, 256> low, high;
-  low.fill({ids.cols, ids.rows}), high.fill({-1, -1});
+  low.fill({ids.cols, ids.rows});
+  high.fill({-1, -1});
   int all = 0;
   for (int row = 0; row < ids.rows; ++row) {
     const auto* const of = ids.ptr<std::uint8_t>(row);
@@ -107,7 +108,8 @@ Picture::Picture(const Observation& seen)
         low[id] = {std::min(low[id].x, column), std::min(low[id].y, row)};
         high[id] = {std::max(high[id].x, column), row};
       } else {
-        ++counts[colours[column][0]], ++all;
+        ++counts[colours[column][0]];
+        ++all;
       }
     }
   }
@@ -142,7 +144,10 @@ std::vector<float> shape_features(const Picture& picture, std::uint8_t id) {
       in_holes += of;
       continue;
     }
-    if (of > most) most = of, largest = i;
+    if (of > most) {
+      most = of;
+      largest = i;
+    }
   }
   const std::vector<cv::Point>& outline = outlines[largest];
   std::vector<cv::Point> hull;

@@ -13,10 +13,10 @@ constexpr int zoom = 6, gap = 1, near = 5, height = 9,
               width_of_digit = 7;  // all but zoom in pixels of the small picture
 
 // Where a label of that size hides least, then is least near to anything else, of eight places around what it belongs
-// to; the first of equal ones. `taken`: segments and labels, `own`: what it belongs to.
-cv::Rect place_beside(const cv::Mat& own, cv::Size label, const cv::Mat& taken) {
-  const cv::Rect segment = cv::boundingRect(own);
-  const cv::Mat others = taken & ~own;
+// to; the first of equal ones. `taken`: segments and labels, `mask`: what it belongs to.
+cv::Rect place_beside(const cv::Mat& mask, cv::Size label, const cv::Mat& taken) {
+  const cv::Rect segment = cv::boundingRect(mask);
+  const cv::Mat others = taken & ~mask;
   const int left = segment.x - label.width - gap, right = segment.x + segment.width + gap;
   const int above = segment.y - label.height - gap, below = segment.y + segment.height + gap;
   const int x = segment.x + (segment.width - label.width) / 2, y = segment.y + (segment.height - label.height) / 2;

@@ -222,7 +222,8 @@ TEST(Messages, demonstrations_arrive_as_they_were_packed) {
   ASSERT_EQ(read.size(), given.size());
   for (std::size_t d = 0; d < given.size(); ++d) {
     EXPECT_EQ(read[d].instruction.utterance, given[d].instruction.utterance);
-    EXPECT_EQ(host::told(read[d].instruction.selection), host::told(given[d].instruction.selection));
+    EXPECT_EQ(host::selection_for_method(read[d].instruction.selection),
+              host::selection_for_method(given[d].instruction.selection));
     ASSERT_EQ(read[d].steps.size(), given[d].steps.size());
     for (std::size_t s = 0; s < given[d].steps.size(); ++s) {
       const Step &a = read[d].steps[s], &b = given[d].steps[s];

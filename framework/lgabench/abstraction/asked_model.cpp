@@ -23,8 +23,8 @@ AskedModel asked_model(const std::string& name, const std::string& patch_text) {
   const Json json = patch_text.empty() ? Json::object() : parse_json(patch_text, "--request");
   const JsonReader patch(json, "--request");
   if (!patch.json().is_object()) patch.fail("an object, a JSON merge patch");
-  for (const char* own : {"model", "messages", "stream"})
-    if (patch.has(own)) patch.at(own).fail("no such member, which lgabench sets");
+  for (const char* member : {"model", "messages", "stream"})
+    if (patch.has(member)) patch.at(member).fail("no such member, which lgabench sets");
   if (name.find(" {") != std::string::npos)
     throw InputError(fmt::format("--model {}: expected no \" {{\" in it", name));
   AskedModel model{name};

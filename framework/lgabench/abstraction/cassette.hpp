@@ -72,7 +72,7 @@ class Cassette {
 
   /// Where it lies.
   const std::filesystem::path& file() const { return file_; }
-  /// Of a reply; 0 where there is none.
+  /// Seconds that a reply took, on the mean; 0 where there is none.
   double mean_seconds() const;
   /// Who was asked and replied: to_text() of each model and request, sorted.
   std::set<std::string> models() const;

@@ -117,11 +117,11 @@ void ChatLanguageModel::ask(const std::vector<Request>& requests, const std::str
   {
     std::unique_lock lock(mutex);
     working -= wanted - threads.size();
-    std::size_t told = 0;
+    std::size_t shown = 0;
     while (working > 0) {
       const bool quiet = changed.wait_for(lock, std::chrono::seconds(10)) == std::cv_status::timeout;
-      if ((finished == told && !quiet) || !options_.progress) continue;
-      told = finished;
+      if ((finished == shown && !quiet) || !options_.progress) continue;
+      shown = finished;
       options_.progress(static_cast<int>(finished), static_cast<int>(requests.size()));
     }
   }

@@ -81,7 +81,8 @@ class ChatLanguageModel : public LanguageModel {
   /// Asks one question. If the reply's meaning cannot be read, the model is told why and asked again, twice at most;
   /// each asking is a query. @throws as answer(), and Unread or Hopeless if the options expect that replies are read.
   Meaning mean(const Command& command, const FeatureSpace& space) override;
-  /// Likewise. Empty, at no cost, where nobody can be asked: there is no client, and the cassette lacks the reply.
+  /// Asks for hypotheses as mean() asks for one meaning. Empty, at no cost, where nobody can be asked: there is no
+  /// client, and the cassette lacks the reply.
   std::vector<Hypothesis> hypotheses(const Command& command, const FeatureSpace& space) override;
   /// Which of the numbers 1 to `marks` in a picture, PNG, the command could mean, in one question (marked()). The
   /// server gets the picture; key and cassette hold its SHA-256. @throws as mean(), and always Unread where no reply

@@ -31,12 +31,12 @@ DisputedPairs read_disputed(const fs::path& file, const FeatureSpace& space) {
 }
 
 bool is_disputed(const DisputedPairs& pairs, const Scenario& scenario, const Scene& scene) {
-  const auto own = pairs.find(scenario.commands[static_cast<std::size_t>(scene.command)].utterance);
-  if (own == pairs.end()) return false;
+  const auto found = pairs.find(scenario.commands[static_cast<std::size_t>(scene.command)].utterance);
+  if (found == pairs.end()) return false;
   std::vector<std::uint8_t> ids;
   for (const SceneObject& object : scene.objects)
     if (!is_place(object.object_type) && !(scenario.second && object.role == scenario.second->id) &&
-        std::any_of(own->second.begin(), own->second.end(),
+        std::any_of(found->second.begin(), found->second.end(),
                     [&](const FeatureSet& set) { return set.contains(object.object_type, object.texture); }))
       ids.push_back(object.instance_id);
   if (ids.empty()) return false;

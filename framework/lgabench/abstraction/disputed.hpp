@@ -12,7 +12,8 @@ namespace lgabench {
 /// Pairs of object type and texture, by the command's words.
 using DisputedPairs = std::map<std::string, std::vector<FeatureSet>>;
 
-/// Of a space, from the data directory's disputed/SPACE.json; none where there is no such file. @throws as below.
+/// Disputed pairs of a space, from the data directory's disputed/SPACE.json; none where there is no such file. @throws
+/// as below.
 DisputedPairs disputed_pairs(const FeatureSpace& space);
 /// @throws InputError with file and place for what is not as docs/formats says.
 DisputedPairs read_disputed(const std::filesystem::path& file, const FeatureSpace& space);

@@ -78,7 +78,8 @@ class DeclaredHuman : public HumanAnswers {
   std::string asks_;
 };
 
-/// For Services::truth: the true distributions of a method that asks for the "truth", else what throws MethodError.
+/// What Services::truth is: the true distributions for a method that asks for the "truth", else what throws
+/// MethodError.
 std::function<Selection(const Command&)> declared_truth(std::vector<ScenarioCommand> commands, const std::string& asks);
 
 }  // namespace lgabench

@@ -11,7 +11,8 @@ namespace lgabench {
 /// no meaning in the space.
 Meaning meaning_in(const std::string& reply, const FeatureSpace& space);
 
-/// Likewise an object {"hypotheses": [{"text", "meaning"}, ...]}. @throws MethodError likewise.
+/// What the reply's object {"hypotheses": [{"text", "meaning"}, ...]} says; it is found as in meaning_in().
+/// @throws MethodError as meaning_in().
 std::vector<Hypothesis> hypotheses_in(const std::string& reply, const FeatureSpace& space);
 
 }  // namespace lgabench

@@ -193,9 +193,9 @@ ChatReply OpenAiClient::complete(const Json& request) {
     if (attempt >= options_.attempts && response.status == 200) throw NoAnswer(why);
     if (attempt >= options_.attempts) throw MethodError(fmt::format("given up after {} attempts: {}", attempt, why));
     const double pause_s = std::max(std::min(wait_s, longest_wait_s), response.retry_after_s);
-    const std::string told =
+    const std::string line =
         fmt::format("attempt {} of {}: {}; the next in {:.0f} s", attempt, options_.attempts, why, pause_s);
-    if (options_.waiting && connections_->is_new(told)) options_.waiting(told);
+    if (options_.waiting && connections_->is_new(line)) options_.waiting(line);
     std::this_thread::sleep_for(std::chrono::duration<double>(pause_s));
     wait_s *= 2;
   }

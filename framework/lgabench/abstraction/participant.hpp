@@ -14,7 +14,7 @@ namespace lgabench {
 
 /// A participant's file, read and checked.
 struct Participant {
-  /// For one command: a Selection made from scratch, and one that began as a language model's proposal.
+  /// The answers to one command: a Selection made from scratch, and one that began as a language model's proposal.
   struct Answer {
     std::optional<Selection> specified, edited;  // provenance human, with seconds; distributions in the space's order
     Selection proposal;                          // what was edited

@@ -51,7 +51,10 @@ std::optional<Instance> uncertain_object(const Preference& preference, const Pai
       for (std::size_t i = 0; i < probabilities.size(); ++i)
         if (preference.candidates()[i].meaning.belongs(instance.object_type, instance.texture)) yes += probabilities[i];
       constexpr double alike = 1e-9;
-      if (const double either = std::min(yes, 1 - yes); either > most + alike) most = either, best = instance;
+      if (const double either = std::min(yes, 1 - yes); either > most + alike) {
+        most = either;
+        best = instance;
+      }
     }
   return best;
 }

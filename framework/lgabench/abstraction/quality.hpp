@@ -22,7 +22,7 @@ struct SetQuality {
   std::optional<NameQuality> pairs = std::nullopt;
 };
 
-/// By set: "target", and the second set's role id where there is one. Empty for a Selection of provenance none.
+/// Quality by set: "target", and the second set's role id where there is one. Empty for a Selection of provenance none.
 using Quality = std::map<std::string, SetQuality>;
 
 Quality quality(const Selection& selection, const Selection& truth);

@@ -42,7 +42,7 @@ class RecordedLanguageModel : public LanguageModel {
   /// there is none. @throws InputError where `source` is none of recorded_sources(). Answers are looked up when they
   /// are asked for.
   RecordedLanguageModel(FeatureSpace space, std::string scenario, std::string source);
-  /// Likewise, those of a file, which is read when they are asked for.
+  /// A model of the answers in a file, which is read when they are asked for.
   static RecordedLanguageModel of_file(FeatureSpace space, std::string scenario, std::filesystem::path file);
   /// Knows the scenario's commands.
   RecordedLanguageModel(const Scenario& scenario, const std::string& source)

@@ -189,7 +189,11 @@ Background usual_background(const std::vector<Demonstration>& demonstrations) {
       const Observation& seen = step.observation;
       expect_whole(seen);
       const std::size_t pixels = seen.ids.size();
-      if (known.empty()) candidates.resize(pixels), lead.resize(pixels), known.resize(pixels);
+      if (known.empty()) {
+        candidates.resize(pixels);
+        lead.resize(pixels);
+        known.resize(pixels);
+      }
       if (known.size() != pixels) throw InputError("demonstrations: expected pictures of one size");
       for (std::size_t i = 0; i < pixels; ++i) {
         if (!is_clear(seen, i)) continue;

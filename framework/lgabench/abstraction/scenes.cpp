@@ -138,7 +138,7 @@ Perception perception_of(const Scenario& scenario, const Arm& arm, std::optional
   for (const PerturbationAxis* axis : arm.axes)
     if (axis->perceive) axes.push_back(axis);
   if (!perceive && noise.label_noise == 0 && noise.missed_segment == 0 && axes.empty()) return nullptr;
-  const std::string own = own_stream(training_seed);
+  const std::string of_seed = own_stream(training_seed);
   const int level = arm.perturbation ? arm.perturbation->level : 0;
   return [&scenario, noise, perceive, own, axes, level, training_seed](const Observation& seen, const Scene& scene,
                                                                        int step) {

@@ -34,7 +34,7 @@ std::string why_no_selection_errors(const Scenario& scenario);
 /// holds, as the place to bring things to; "" for none.
 Selection with_errors(Selection selected, const Scenario& scenario, int command, const SelectionErrors& errors,
                       std::uint64_t training_seed, const std::string& never_meant);
-/// Likewise, with the numbers of that stream.
+/// The same errors, decided by the numbers of `random`.
 Selection with_errors(Selection selected, const Scenario& scenario, int command, const SelectionErrors& errors,
                       RandomStream random, const std::string& never_meant);
 

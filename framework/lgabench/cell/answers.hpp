@@ -16,8 +16,8 @@ struct Answers {
   std::unique_ptr<HumanAnswers> human;
   std::function<Selection(const Command&)> truth;
 };
-/// For the job's cell; `server`, borrowed, is asked where the cell asks a model; `in_line` as in ChatOptions. @throws
-/// InputError for a file that is missing or has other bytes.
+/// The answers for the job's cell. `server`, borrowed, is asked where the cell asks a model; `in_line` is as in
+/// ChatOptions. @throws InputError for a file that is missing or has other bytes.
 Answers answers_for(const CellJob& job, const Scenario& scenario, ChatClient* server,
                     const std::function<void(bool begins)>& in_line);
 

@@ -79,7 +79,10 @@ std::string judge_task(const TaskInfo& task_info, const PluginInfo& engine, Chec
     scenes.push_back(test_scene(scenario, task_info.layouts[static_cast<std::size_t>(i) % task_info.layouts.size()],
                                 scenario.tests.front().id, engine_seed, i));
     forwards.push_back(play(*environment, scenes.back()));
-    if (!forwards.back().success) ++lost, last_lost = forwards.back().failure;
+    if (!forwards.back().success) {
+      ++lost;
+      last_lost = forwards.back().failure;
+    }
     all += forwards.back().bytes;
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

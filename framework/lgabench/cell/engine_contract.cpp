@@ -189,7 +189,10 @@ std::string refuses(PhysicsWorld& world) {
   const auto no_number = [&world] {
     world.reset({at(block, .5, 0)});
     world.grip(0, {{.5, 0, block_m}, {}});
-    for (int i = 0; i < 20; ++i) world.move_gripper({{std::nan(""), 0, block_m}, {}}), world.step();
+    for (int i = 0; i < 20; ++i) {
+      world.move_gripper({{std::nan(""), 0, block_m}, {}});
+      world.step();
+    }
   };
   for (const auto& [what, call] : std::vector<std::pair<const char*, std::function<void()>>>{
            {"pose() of a body that is not placed", nobody},

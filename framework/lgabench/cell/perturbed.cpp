@@ -49,8 +49,9 @@ std::array<std::string, parts> parts_of(const PlayedScene& played, const Observa
   const Scene& scene = played.scene;
   Json objects = to_json(scene).at("objects"), control = to_json(played.control), physics = Json::array(),
        pixels = Json::array();
-  for (const char* own : {"arm", "command"}) control.erase(own);  // a scene is the control's whoever asks, and how
-  for (Json& object : objects) object.erase("scale");             // of physics
+  for (const char* member : {"arm", "command"})
+    control.erase(member);                             // a scene is the control's whoever asks, and how
+  for (Json& object : objects) object.erase("scale");  // of physics
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     physics.push_back({scene.objects[i].object_type, scene.objects[i].role});
     if (i >= played.bodies.size()) continue;

@@ -20,12 +20,12 @@ struct PlayedScene {
 };
 
 /// The parts of an episode that a policy sees as `observation`, or is given as what was `read` of it, told `told` where
-/// `selected` was selected. Without them, of a reference row.
+/// `selected` was selected. A reference row has neither.
 std::array<std::string, parts> parts_of(const PlayedScene& played, const Observation& observation,
                                         const Instruction* selected, const Instruction* told,
                                         const Observation* read = nullptr);
 
-/// Of ids, and of the id, type and texture of each instance.
+/// Hash of ids, and of the id, type and texture of each instance.
 std::string names_hash(const Observation& observation);
 
 /// Expects of every axis of the scenario's arms that parts which it does not declare are the control's, to the bit, and

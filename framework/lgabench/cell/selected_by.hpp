@@ -19,14 +19,14 @@ class SelectedBy : public MethodInProcesses {
   SelectedBy(std::unique_ptr<HostedMethod> selects, Make acts)
       : selects_(std::move(selects)), make_acts_(std::move(acts)) {}
 
-  /// Those of LGA, and to revise: what a method that does not revise returns then is what it selected.
+  /// LGA's needs, and revise(), which returns what was selected where the selecting method does not revise.
   Needs needs(const Json& options) const override;
   Selection select(const Command& command, const FeatureSpace& space, Services& services) override;
   Selection revise(const Command& command, const Selection& selected, const std::vector<Demonstration>& demonstrations,
                    Services& services) override;
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override;
 
-  /// Those of what selects.
+  /// Files of the method that selects.
   std::vector<std::pair<std::string, std::string>> files() const override;
   void end() override;
 

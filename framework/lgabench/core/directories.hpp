@@ -9,7 +9,7 @@ namespace lgabench {
 /// Makes the directory and those above it; one that is there stays. Returns what is in the way, or "": a link that
 /// leads nowhere, a file, what the system refuses.
 std::string try_make_directories(const fs::path& directory);
-/// Likewise. @throws InputError with what is in the way
+/// Makes the directory as try_make_directories() does. @throws InputError with what is in the way
 void make_directories(const fs::path& directory);
 
 /// The directory for temporary files: that of TMPDIR (else TMP, TEMP, TEMPDIR), else /tmp. @throws InputError with the

@@ -40,16 +40,34 @@ struct Form {
 };
 inline Form when(bool written) { return {false, written}; }
 inline Form may_lack() { return when(true); }
-inline Form or_null(bool null, Form form = {}) { return form.may_be_null = true, form.null = null, form; }
-inline Form object(Form form = {}) { return form.object = true, form; }
-inline Form within(long long lowest, long long highest, Form form = {}) {
-  return form.lowest = lowest, form.highest = highest, form;
+inline Form or_null(bool null, Form form = {}) {
+  form.may_be_null = true;
+  form.null = null;
+  return form;
 }
-inline Form up_to(double most, Form form = {}) { return form.most = most, form; }
-inline Form at_least(long long lowest, Form form = {}) { return form.lowest = lowest, form; }
+inline Form object(Form form = {}) {
+  form.object = true;
+  return form;
+}
+inline Form within(long long lowest, long long highest, Form form = {}) {
+  form.lowest = lowest;
+  form.highest = highest;
+  return form;
+}
+inline Form up_to(double most, Form form = {}) {
+  form.most = most;
+  return form;
+}
+inline Form at_least(long long lowest, Form form = {}) {
+  form.lowest = lowest;
+  return form;
+}
 template <class Words>
 Form one_of(const Words& words, Form form = {}, const char* expectation = nullptr) {
-  return form.words = std::data(words), form.count = std::size(words), form.expectation = expectation, form;
+  form.words = std::data(words);
+  form.count = std::size(words);
+  form.expectation = expectation;
+  return form;
 }
 
 /// What fields() names its members to, in the order in which they are read.

@@ -13,7 +13,7 @@ enum class Lock { shared, exclusive };
 /// @throws InputError for everything else: it has errno's words and the variable.
 bool try_lock(int descriptor, Lock lock, const fs::path& file);
 
-/// Likewise; waits while another process's lock is in the way.
+/// Takes the lock as try_lock() does; waits while another process's lock is in the way.
 void wait_for_lock(int descriptor, Lock lock, const fs::path& file);
 
 /// Whether another process holds a lock that excludes ours; false where that cannot be told.

@@ -8,7 +8,7 @@ namespace lgabench {
 
 #if defined(__SSE2__)
 constexpr unsigned flush_bits = 0x8040;  // MXCSR: flush-to-zero, denormals-are-zero
-/// For the calling thread; threads started later inherit it.
+/// Denormals are zero from now on in the calling thread; threads started later inherit it.
 inline void flush_denormals() { _mm_setcsr(_mm_getcsr() | flush_bits); }
 inline bool denormals_flushed() { return (_mm_getcsr() & flush_bits) == flush_bits; }
 #else

@@ -22,11 +22,11 @@ std::vector<BodyVariants> bodies_of_arms(const Scenario& scenario) {
     BodyVariants& of_arm = all.emplace_back();
     for (const PerturbationAxis* axis : arm.axes) {
       if (!axis->bodies) continue;
-      const BodyVariants own = axis->bodies(arm.perturbation->level);
-      if (own.scales.size() > 1) of_arm.scales = own.scales;
-      of_arm.friction *= own.friction;
-      of_arm.mass *= own.mass;
-      of_arm.more += own.more;
+      const BodyVariants of_axis = axis->bodies(arm.perturbation->level);
+      if (of_axis.scales.size() > 1) of_arm.scales = of_axis.scales;
+      of_arm.friction *= of_axis.friction;
+      of_arm.mass *= of_axis.mass;
+      of_arm.more += of_axis.more;
     }
   }
   return all;

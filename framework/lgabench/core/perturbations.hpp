@@ -88,7 +88,8 @@ std::vector<std::string> part_words(const std::vector<EpisodePart>& some);
 /// {"version", "levels", "changes", "may_change", "named"}, the last two where they say something: what a plugin's axis
 /// declares.
 Json axis_json(const PerturbationAxis& axis);
-/// Of that, or of a plugin's declaration, which has no version. Until it is set, what perceives throws InputError.
+/// The axis of axis_json(), or of a plugin's declaration, which has no version. Until perceive() is set, it throws
+/// InputError.
 /// @throws InputError with file and place, also for a part that is not perceived.
 PerturbationAxis read_axis(const std::string& id, const JsonReader& reader);
 

@@ -108,7 +108,8 @@ pid_t start_process(const ProcessStart& start) {
   reading.close();
   const auto give_up = [&writing](Stage step) {
     const Stopped stopped{step, errno};
-    [[maybe_unused]] const ssize_t told = ::write(writing.fd, &stopped, sizeof stopped);  // or nobody listens any more
+    [[maybe_unused]] const ssize_t written =
+        ::write(writing.fd, &stopped, sizeof stopped);  // or nobody listens any more
     ::_exit(not_started);
   };
   ::signal(SIGXFSZ, SIG_DFL);  // which lgabench ignores

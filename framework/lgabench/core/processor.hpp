@@ -11,7 +11,7 @@ inline bool has_avx512() {
 #endif
 }
 
-/// With fused multiply-add.
+/// Whether the processor has AVX2 with fused multiply-add.
 inline bool has_avx2() {
 #if defined(__x86_64__)
   return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");

@@ -24,7 +24,8 @@ class Refused : public InputError {
   int reason;  // errno
 };
 
-/// As many threads of work() as the system starts, at most `most`. The caller works too, so fewer only take longer.
+/// Starts as many threads of work() as the system lets it, at most `most`. The caller works too, so fewer only take
+/// longer.
 template <class Work>
 std::vector<std::thread> start_helpers(std::size_t most, const Work& work) {
   std::vector<std::thread> helpers;

@@ -59,16 +59,16 @@ Tree tree_of(const fs::path& root, const std::string& controller) {
 std::vector<fs::path> groups(const fs::path& root, const std::string& controller) {
   const Tree tree = tree_of(root, controller);
   if (tree.where.empty()) return {};
-  std::string own;  // HIERARCHY:CONTROLLERS:GROUP
+  std::string path;  // HIERARCHY:CONTROLLERS:GROUP
   std::ifstream file(root / "proc/self/cgroup");
   for (std::string line; std::getline(file, line);) {
     const std::vector<std::string> parts = parts_of(line, ':');
     if (parts.size() >= 3 && (controller.empty() ? parts[1].empty() : lists(parts[1], controller)))
-      own = line.substr(parts[0].size() + parts[1].size() + 2);
+      path = line.substr(parts[0].size() + parts[1].size() + 2);
   }
-  if (tree.root != "/" && own.rfind(tree.root, 0) == 0) own = own.substr(tree.root.size());
+  if (tree.root != "/" && path.rfind(tree.root, 0) == 0) path = path.substr(tree.root.size());
   const fs::path top = root / fs::path(tree.where).relative_path();
-  fs::path group = top / fs::path(own).relative_path();
+  fs::path group = top / fs::path(path).relative_path();
   std::error_code not_there;
   if (!fs::is_directory(group, not_there)) group = top;  // a container may name the group as the machine does
   std::vector<fs::path> all{group};
@@ -102,10 +102,10 @@ double affinity() {
     cpu_set_t* const set = CPU_ALLOC(most);
     if (!set) break;
     const std::size_t bytes = CPU_ALLOC_SIZE(most);
-    const bool told = ::sched_getaffinity(0, bytes, set) == 0;
-    const int reason = errno, count = told ? CPU_COUNT_S(bytes, set) : 0;
+    const bool known = ::sched_getaffinity(0, bytes, set) == 0;
+    const int reason = errno, count = known ? CPU_COUNT_S(bytes, set) : 0;
     CPU_FREE(set);
-    if (told) return count;
+    if (known) return count;
     if (reason != EINVAL) break;  // EINVAL: the machine has more processors than the set has room for
   }
   return std::max(1u, std::thread::hardware_concurrency());

@@ -171,7 +171,10 @@ Arm read_arm(const JsonReader& reader, std::vector<std::string> members, const P
 void expect_control(const JsonReader& file, const JsonReader& arm) {
   Json control = file.at("tests").elements().front().json(), same = arm.json();
   if (control.contains("perturbation")) arm.at("perturbation").fail("a first arm without a perturbation, its control");
-  for (const char* own : {"arm", "perturbation"}) control.erase(own), same.erase(own);
+  for (const char* member : {"arm", "perturbation"}) {
+    control.erase(member);
+    same.erase(member);
+  }
   if (control != same) arm.at("perturbation").fail("the other members of the first arm, its control");
 }
 
@@ -257,7 +260,7 @@ Scenario read_scenario(const Json& json, const std::string& file) {
                   "played", "questions", "may_stop", "axes", "truth", "printed", "note"});
   reader.only(members);
   if (reader.has("printed")) {
-    std::vector<std::string> replaced = own;
+    std::vector<std::string> replaced = of_task;
     replaced.insert(replaced.end(), {"commands", "note"});
     reader.at("printed").only(replaced);
   }

@@ -42,7 +42,7 @@ struct Arm {
   double label_noise = 0, missed_segment = 0;     // how imperfect the textualization is (see textualization.hpp)
   std::optional<Perturbation> perturbation = {};  // of the scenes of the scenario's first arm, its control
   /// The axes that make this difference, in the order in which they do; of `all`, those that the scenario can have.
-  /// Those of plugins live as long as the scenario.
+  /// Axes of plugins live as long as the scenario.
   std::vector<const PerturbationAxis*> axes = {};
   int wording = 0;  // above 0: gives the command in those other words
 };

@@ -16,9 +16,9 @@ struct DrawRequest {
   int parts = 4;  // of a compound command
 };
 
-/// As many commands, of all families in turn, no two of which mean the same; a family that has no more is passed over.
-/// What `is_fit` refuses is drawn again. A function of lexicon and request, on any machine. @throws InputError for
-/// parts that no compound command has, and where all families together have fewer commands.
+/// Draws as many commands as are asked for, of all families in turn, no two of which mean the same; a family that has
+/// no more is passed over. What `is_fit` refuses is drawn again. A function of lexicon and request, on any machine.
+/// @throws InputError for parts that no compound command has, and where all families together have fewer commands.
 std::vector<DrawnCommand> draw_commands(const Lexicon& lexicon, const DrawRequest& request,
                                         const std::function<bool(const DrawnCommand&)>& is_fit);
 

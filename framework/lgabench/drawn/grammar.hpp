@@ -18,8 +18,8 @@ struct DrawnCommand {
   std::vector<std::string> why;  // of each entry of the lexicon, in the order of the words
 };
 
-/// In the order in which a draw goes through them: lookup, category, colour, negation, union, relation, superlative,
-/// compound.
+/// The families of commands, in the order in which a draw goes through them: lookup, category, colour, negation, union,
+/// relation, superlative, compound.
 const std::vector<std::string>& families();
 
 /// What a compound command is made of: descriptions of the lexicon, and the rule for which of several is meant.

@@ -22,7 +22,7 @@ class Belief {
   const std::vector<double>& probabilities() const { return probabilities_; }
   /// The likeliest rule; of equals (1e-9) the narrower, with fewer pairs of type and texture, then the first.
   std::size_t likeliest() const;
-  /// Of each thing, how likely the person takes it, where one of those that a rule takes is taken with equal odds.
+  /// How likely the person takes each thing, where one of those that a rule takes is taken with equal odds.
   std::vector<double> takes(const Standing& scene) const;
   /// Bits that an answer is expected to tell of the rule.
   double expected_bits(const Standing& scene, const std::optional<std::size_t>& one, double errs) const;

@@ -70,12 +70,12 @@ const PersonGrammar::Words* words_in(const PersonGrammar& grammar, const std::st
 /// The hint that the utterance ends with; nothing where it has none.
 const PersonGrammar::Hint* hint_in(const PersonGrammar& grammar, const std::string& utterance);
 bool leaves(const PersonGrammar::Hint& hint, const PersonRule& rule);
-/// Those that the hint leaves, whose priors add up to 1 again.
+/// The rules that the hint leaves; their priors add up to 1 again.
 std::vector<PersonRule> left_by(const PersonGrammar::Hint& hint, std::vector<PersonRule> rules);
 /// The rule as a scenario or a Selection has it, and back; nothing for what is not such a rule.
 Meaning meaning_of(const PersonRule& rule, const FeatureSpace& space);
 std::optional<PersonRule> rule_of(const Meaning& meaning, const FeatureSpace& space);
-/// The same objects by the same place; the prior does not count.
+/// Whether both rules take the same objects by the same place; the prior does not count.
 bool same(const PersonRule& a, const PersonRule& b);
 
 /// Objects of a scene as rules see them, with what they are brought to.
@@ -90,8 +90,8 @@ Standing standing(const std::vector<Placed>& visible, const FeatureSpace& space)
 /// Numbers of the things that the rule takes, as grounded() has it: all that belong or, with a place, the one, and
 /// those within half a pixel of it. `goal` is where things are brought to.
 std::vector<std::size_t> taken_by(const PersonRule& rule, const std::vector<Thing>& things, const Thing& goal);
-/// Likewise, and no other that belongs is so near to being the one that a reader could doubt it (20 pixels of columns,
-/// 25 of distances; protocol, section 3).
+/// Whether the rule takes the thing `the_one` alone, and no other that belongs is so near to it that a reader
+/// could doubt it (20 pixels of columns, 25 of distances; protocol, section 3).
 bool takes_plainly(const PersonRule& rule, const std::vector<Thing>& things, const Thing& goal, std::size_t the_one);
 
 /// One of the rules, as likely as its prior says.
@@ -102,7 +102,7 @@ Thing draw_thing(const PersonRule& rule, RandomStream& random);
 inline constexpr int rivals = 5;  // objects of a scene
 /// Gives things their places in the picture; false where it finds no room.
 using Places = std::function<bool(std::vector<Thing>& things)>;
-/// On a table of 128 x 256 pixels, as far apart as wide objects must stand, with the goal at plain_goal.
+/// Places things on a table of 128 x 256 pixels, as far apart as wide objects must stand, with the goal at plain_goal.
 bool place_plainly(std::vector<Thing>& things, RandomStream& random);
 inline constexpr Thing plain_goal{0, 0, 64, 205};
 

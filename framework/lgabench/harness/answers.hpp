@@ -25,7 +25,7 @@ struct AnswerFile {
   Json about;                  // {"model"} or {"participant"}: who answered
 };
 
-/// Those that a run keeps.
+/// Files of answers that a run keeps.
 std::vector<AnswerFile> kept_answers(const std::filesystem::path& run);
 /// Writes what is not there yet. @throws InputError for a file that is not what its name says.
 void keep_answers(const std::vector<AnswerFile>& files, const std::filesystem::path& run);
@@ -48,7 +48,7 @@ void drop_other_replies(const std::string& but, const std::filesystem::path& run
 /// @throws InputError where `answers` (recorded, or one of recorded_sources()) has none for a command of the scenarios:
 /// names those scenarios.
 void check_recorded(const RecordedAnswers& answers, const std::vector<std::string>& scenarios);
-/// Likewise of a file that somebody wrote. @throws InputError as read_recorded(), too.
+/// Checks a file that somebody wrote, as check_recorded(). @throws InputError as read_recorded(), too.
 AnswerFile check_written(const std::filesystem::path& answers, const std::vector<std::string>& scenarios);
 
 /// Whoever answers for a scenario's commands; a cassette answers for all of them.

@@ -9,11 +9,11 @@ namespace lgabench {
 
 /// What selects; null of a reference row. @throws as Catalogue::find().
 const PluginInfo* method_plugin(const Cell& cell, const Catalogue& catalogue);
-/// What acts in place of it; null where the method does. @throws likewise.
+/// What acts in place of it; null where the method does. @throws as method_plugin().
 const PluginInfo* acting_plugin(const Cell& cell, const Catalogue& catalogue);
-/// Those whose axes its arms have. @throws likewise.
+/// The plugins whose axes its arms have. @throws as method_plugin().
 std::vector<PluginInfo> axis_plugins(const Cell& cell, const Catalogue& catalogue);
-/// What reads its names; null where no plugin does. @throws likewise.
+/// What reads its names; null where no plugin does. @throws as method_plugin().
 const PluginInfo* perceiver_plugin(const Cell& cell, const Catalogue& catalogue);
 
 /// Hashes of all that computes the cell, by name. @throws likewise.

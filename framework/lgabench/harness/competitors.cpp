@@ -43,12 +43,12 @@ struct Layer {
       if (reaches(info, option)) values[option] = value;
     return values;
   }
-  Json own(const PluginInfo& info) const { return options.value(info.id, Json::object()); }
+  Json set_for(const PluginInfo& info) const { return options.value(info.id, Json::object()); }
   Json any() const { return options.value("*", Json::object()); }
   // The values for the method: those of its id, then those of "*".
   Json of(const PluginInfo& info) const {
     Json values = of_any(info);
-    values.update(own(info));
+    values.update(set_for(info));
     return values;
   }
   // Throws for an option in "*" that reaches no plugin, and for a value that a method of the run does not take.
@@ -61,7 +61,7 @@ struct Layer {
     const Json all = any();
     JsonReader(all, file, place + "/*").only({known.begin(), known.end()});
     for (const PluginInfo* info : methods) {
-      const Json shared = of_any(*info), its_own = own(*info);
+      const Json shared = of_any(*info), its_own = set_for(*info);
       check_options(*info, JsonReader(shared, file, place + "/*"));
       check_options(*info, JsonReader(its_own, file, place + "/" + info->id));
     }
@@ -90,9 +90,9 @@ Json value_of(const PluginInfo& info, const Json& options, const std::string& op
 }
 
 std::string named(const std::string& group, const PluginInfo& info, const Json& options, const Json& usual,
-                  const std::set<std::string>& told) {
+                  const std::set<std::string>& differing) {
   std::string name = group;
-  for (const std::string& option : told)
+  for (const std::string& option : differing)
     if (const Json value = value_of(info, options, option); value != value_of(info, usual, option))
       name += fmt::format("+{}={}", option, option_text(value));
   return name;
@@ -104,8 +104,8 @@ std::vector<Competitor> competitors(const Suite& suite, const Design& design, co
                                     const Catalogue& catalogue) {
   std::vector<const PluginInfo*> infos;
   std::vector<Competitor> methods;
-  std::map<std::string, Json> usual;                  // group -> options of its row without options of its own
-  std::map<std::string, std::set<std::string>> told;  // group -> options in which its rows differ
+  std::map<std::string, Json> usual;                       // group -> options of its row without options of its own
+  std::map<std::string, std::set<std::string>> differing;  // group -> options in which its rows differ
   std::vector<std::string> groups;
   for (const std::string& written : design.methods) {
     const std::string id = row_id(written);
@@ -132,11 +132,11 @@ std::vector<Competitor> competitors(const Suite& suite, const Design& design, co
         for (const auto& declared : info.options.items())
           if (const std::string& option = declared.key();
               value_of(info, methods[before].options, option) != value_of(info, methods.back().options, option))
-            told[group].insert(option);
+            differing[group].insert(option);
   }
   for (std::size_t i = 0; i < infos.size(); ++i) {
     Competitor& method = methods[i];
-    method.name = named(groups[i], *infos[i], method.options, usual.at(groups[i]), told[groups[i]]);
+    method.name = named(groups[i], *infos[i], method.options, usual.at(groups[i]), differing[groups[i]]);
     for (std::size_t before = 0; before < i; ++before)
       if (methods[before].name == method.name)
         throw InputError(fmt::format("methods: \"{}\" and \"{}\" are the same row, {}; expected each row once",

@@ -10,7 +10,7 @@ namespace lgabench {
 /// Seconds of a cell by what was measured once (the data directory's measured/costs.json): of its method and network
 /// for each demonstration and pass over it, and of each demonstration and episode. @throws InputError
 double usual_seconds(const Cell& cell);
-/// Of these, seconds of all but what the method takes to learn.
+/// usual_seconds() without those that the method takes to learn.
 double least_seconds(const Cell& cell);
 /// The measured method that stands in for a cell's unmeasured one; "" if the cell's was measured.
 std::string measured_on(const Cell& cell);
@@ -25,7 +25,7 @@ class Costs {
   /// Seconds that the cell is expected to take: the usual ones, corrected as its row's other cells were, else as all
   /// others.
   double expected_seconds(const Cell& cell) const { return expected_seconds(cell.method.name, usual_seconds(cell)); }
-  /// Likewise of a cell of `row` that usually takes `usual` seconds.
+  /// Seconds that a cell of `row` is expected to take, which usually takes `usual`.
   double expected_seconds(const std::string& row, double usual) const;
 
  private:

@@ -6,7 +6,8 @@
 
 namespace lgabench {
 
-/// On stderr: one line on a terminal, else a line after five seconds, every half minute and at the end. One thread.
+/// Says on stderr how far something is: one line on a terminal, else a line after five seconds, every half minute and
+/// at the end. One thread.
 class CountedProgress {
  public:
   /// What is over within five seconds is told or not.

@@ -59,7 +59,8 @@ Forecast forecast(const std::vector<const Cell*>& complete, const std::vector<co
   std::map<std::string, bool> unknown_rows;  // by name
   const auto add = [&](const Cell& cell, bool there) {
     Forecast::Row& row = row_of(cell);
-    ++row.cells, ++all.cells;
+    ++row.cells;
+    ++all.cells;
     row.there += there;
     all.there += there;
     if (there) return;

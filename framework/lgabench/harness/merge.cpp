@@ -302,12 +302,12 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
   for (const Part& part : parts)
     if (!asks_live(part) || &part == &replies) keep_answers(kept_answers(part.path()), out);
   std::size_t copied = 0;
-  auto told = std::chrono::steady_clock::now();
+  auto last_line = std::chrono::steady_clock::now();
   for (const auto& [key, from] : chosen) {
     copy_cell(from, directory.scratch(key));
     ++copied;
-    if (const auto now = std::chrono::steady_clock::now(); now - told > std::chrono::seconds(2)) {
-      told = now;
+    if (const auto now = std::chrono::steady_clock::now(); now - last_line > std::chrono::seconds(2)) {
+      last_line = now;
       to_stderr("{} of {} cells copied\n", copied, chosen.size());
     }
   }

@@ -21,7 +21,7 @@ struct Questions {
   std::string text() const;
 };
 
-/// Those of select_features() about the scenarios' commands. @throws InputError for what is no cassette.
+/// Counts the questions of select_features() about the scenarios' commands. @throws InputError for what is no cassette.
 Questions count_questions(const LiveModel& live, const std::string& model, const std::vector<Json>& scenarios);
 
 /// Asks what the cassette lacks, in a worker, and says on stderr how far it is unless `quiet`. What stays without an

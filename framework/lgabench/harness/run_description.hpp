@@ -8,7 +8,7 @@
 
 namespace lgabench {
 
-/// Of all cells of the plan. @throws PluginError for a missing plugin.
+/// The record of a run of all cells of the plan. @throws PluginError for a missing plugin.
 RunRecord describe(const RunPlan& plan, const Catalogue& catalogue);
 
 /// The part of the run that is computed now; none where that is all of it.

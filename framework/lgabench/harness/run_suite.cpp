@@ -72,10 +72,12 @@ ShardState shard_state(const RunPlan& plan, const Catalogue& catalogue, const Ru
     const CellState state = directory.state(key(*cell), build_of(*cell, catalogue));
     (state.complete ? all.complete : all.missing).push_back(cell);
     if (state.complete) continue;
-    if (state.other_build)
-      ++other_build, why = state.why;
-    else if (!state.why.empty())
+    if (state.other_build) {
+      ++other_build;
+      why = state.why;
+    } else if (!state.why.empty()) {
       to_stderr("{}: {}; computed again\n", cell->title(), state.why);
+    }
   }
   if (other_build && plan.existing == Existing::same)
     throw InputError(fmt::format("{}: {} cells were {}; --resume computes them again, --fresh drops the run",

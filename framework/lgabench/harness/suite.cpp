@@ -107,7 +107,7 @@ void expect_about(const JsonReader& about) {
 
 // What the suite changes in its scenarios.
 void read_changes(const JsonReader& reader, Suite& suite) {
-  const std::vector<std::string>& own = suite.design.scenarios;
+  const std::vector<std::string>& listed = suite.design.scenarios;
   const std::vector<std::string> played = played_scenarios(suite.design, suite.presets);
   const auto json_of = [](const JsonReader& value) { return value.json(); };
   const auto named = [](const char* what, const std::vector<std::string>& known) {
@@ -126,7 +126,7 @@ void read_changes(const JsonReader& reader, Suite& suite) {
   if (reader.has("near_miss")) suite.near_miss = members_of(reader.at("near_miss"), played, json_of);
   if (reader.has("scenes")) suite.scenes = members_of(reader.at("scenes"), played, object_of);
   if (reader.has("paraphrases"))
-    suite.paraphrases = members_of(reader.at("paraphrases"), own, named("scenario", scenarios));
+    suite.paraphrases = members_of(reader.at("paraphrases"), listed, named("scenario", scenarios));
   if (reader.has("answers")) suite.answers = members_of(reader.at("answers"), played, named("answers", files));
   if (reader.has("variants")) {
     const JsonReader variants = reader.at("variants");

@@ -39,12 +39,13 @@ struct Suite {
   std::map<std::string, std::string> answers;  // scenario -> whose recorded answers hold, in place of those it names
   std::map<std::string, SuiteVariant> variants;
   std::map<std::string, std::vector<std::string>> groups;  // scenarios, each in one group at most, whose mean is shown
-  std::vector<std::string> selects_nothing;  // methods in which errors of a Selection make no difference: without alone
-  std::vector<std::string> references;       // rows of that kind beside those that every suite has
-  Json about;                                // of a suite in a file of the user's own, what pages say of it; null: none
-  Json claims;                               // its own (suite_claims.hpp); null: none
-  Json presets;                              // name -> members of Design
-  std::string file;                          // for messages
+  std::vector<std::string>
+      selects_nothing;  // methods that are run only without errors of a Selection, which change nothing in them
+  std::vector<std::string> references;  // rows of that kind beside those that every suite has
+  Json about;                           // of a suite in a file of the user's own, what pages say of it; null: none
+  Json claims;                          // its own (suite_claims.hpp); null: none
+  Json presets;                         // name -> members of Design
+  std::string file;                     // for messages
 };
 
 /// The suite named `id` from the data directory's suites/, or the file `id` if it ends in .json; scenarios beside that

@@ -174,7 +174,7 @@ Json AnswerLedger::ask_person(const JsonReader& reader) {
                              : how == "truth" ? services_.truth(command)
                                               : services_.human.specify(command);
   keep(answered);
-  return {{"type", "person"}, {"selection", host::told(answered)}};
+  return {{"type", "person"}, {"selection", host::selection_for_method(answered)}};
 }
 
 void AnswerLedger::keep(Selection answered) { answers_.push_back(in_order(std::move(answered), space_)); }

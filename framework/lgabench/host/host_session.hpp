@@ -63,7 +63,7 @@ class HostSession {
   const host::Layout& layout() const { return layout_; }
   const std::vector<std::string>& refused_calls() const { return process_.refused_calls(); }
   host::SharedMemory& observation() { return observation_; }
-  /// As ProcessState, of a C++ plugin's process beyond what it held before the plugin came.
+  /// What a C++ plugin's process holds beyond what it held before the plugin came.
   ProcessState state();
   /// Processes that the plugin started and that are still there, "NUMBER NAME" each.
   std::vector<std::string> processes() const { return process_.started(); }

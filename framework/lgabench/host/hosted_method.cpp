@@ -115,7 +115,7 @@ Selection HostedMethod::revise(const Command& command, const Selection& selected
   Json request = packed.header;
   request["type"] = "revise";
   request["command"] = host::to_json(command);
-  request["selection"] = host::told(selected);
+  request["selection"] = host::selection_for_method(selected);
   request["shows_truth"] = services.shows_truth;
   try {
     const Frame frame = session_->call(request, "revised", answer, &packed.file);

@@ -40,7 +40,8 @@ class HostedMethod : public MethodInProcesses {
   /// The policy may outlive this object; it acts in the same process.
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override;
   std::unique_ptr<Policy> restore(const std::string& saved, Services&) override { return restore(saved); }
-  /// Likewise: its process has services of its own, and may ask nobody meanwhile.
+  /// Restores a policy, which may outlive this object. The process has services of its own, and may ask nobody
+  /// meanwhile.
   std::unique_ptr<Policy> restore(const std::string& saved);
   std::vector<std::pair<std::string, std::string>> files() const override;
   void end() override;
@@ -50,11 +51,11 @@ class HostedMethod : public MethodInProcesses {
   /// For check-plugin: destroys the policy or the method. After both, needs() makes a new method in the same process.
   void drop_method();
   void drop_policy();
-  /// Likewise: what the process of a plugin holds beyond what it held before the plugin was loaded.
+  /// For check-plugin: what the process of a plugin holds beyond what it held before the plugin was loaded.
   ProcessState state() const;
-  /// Likewise: whether its process can be asked nothing any more.
+  /// For check-plugin: whether its process can be asked nothing any more.
   bool is_broken() const { return session_->is_broken(); }
-  /// Likewise, of any plugin: processes that it started and that are still there, "NUMBER NAME" each.
+  /// For check-plugin: processes that the plugin started and that are still there, "NUMBER NAME" each.
   std::vector<std::string> processes() const;
 
  private:

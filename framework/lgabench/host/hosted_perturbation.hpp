@@ -23,14 +23,14 @@ class HostedPerturbation : public ObservationPerturbation, public Perceiver {
   /// Shadows are those of the instances that are left.
   Observation perceive(Observation seen, int level, RandomStream stream) override;
 
-  /// Likewise, of a perceiver, which is sent no instances.
+  /// What a perceiver reads; it is sent no instances. What comes back is as that of perceive().
   Observation read(Observation seen, const FeatureSpace& space) override;
 
   /// Names of the system calls that its process was refused so far.
   std::vector<std::string> refused_calls() const;
   /// For check-plugin: destroys it; perceive() makes another one in the same process.
   void drop();
-  /// Likewise, of a C++ plugin: what its process holds beyond what it held before the plugin was loaded.
+  /// For check-plugin, of a C++ plugin: what its process holds beyond what it held before the plugin was loaded.
   ProcessState state() const;
 
  private:

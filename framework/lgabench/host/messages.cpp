@@ -83,7 +83,7 @@ Command read_command(const JsonReader& reader) { return value_of<Command>(reader
 Json to_json(const FeatureSpace& space) { return json_of(space); }
 FeatureSpace read_space(const JsonReader& reader) { return value_of<FeatureSpace>(reader, false); }
 
-Json told(const Selection& selection) {
+Json selection_for_method(const Selection& selection) {
   Json json = distribution_json(selection);
   json.update({{"provenance", to_string(selection.provenance)},
                {"source", selection.source},
@@ -107,7 +107,7 @@ Selection read_selection(const JsonReader& reader) {
 }
 
 Json to_json(const Instruction& instruction) {
-  return {{"utterance", instruction.utterance}, {"selection", told(instruction.selection)}};
+  return {{"utterance", instruction.utterance}, {"selection", selection_for_method(instruction.selection)}};
 }
 
 Instruction read_instruction(const JsonReader& reader) {

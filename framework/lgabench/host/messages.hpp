@@ -28,7 +28,7 @@ Json to_json(const FeatureSpace& space);
 FeatureSpace read_space(const JsonReader& reader);
 
 /// A Selection as a method is told of it: with provenance, source and wording, and without cost.
-Json told(const Selection& selection);
+Json selection_for_method(const Selection& selection);
 /// Reads that, or what a method returns: {"target", a second set?}. Names as they are.
 Selection read_selection(const JsonReader& reader);
 

@@ -14,7 +14,7 @@ struct ProcessState {
 
   /// State of this process; `flushed` and `rounds` are left to whoever made the calls.
   static ProcessState now();
-  /// This without the threads and descriptors of `before`.
+  /// This state without the threads and descriptors of `before`.
   ProcessState beyond(const ProcessState& before) const;
 };
 

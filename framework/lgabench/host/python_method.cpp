@@ -120,7 +120,7 @@ std::string answer_of(const std::string& interpreter, const std::string& word, c
   return out;
 }
 
-// Before a file is opened, which a FIFO would make wait for ever. One that is not there its reader tells of.
+// Asked before a file is opened: opening a FIFO would wait for ever. The reader of the file reports a missing one.
 void check_is_readable(const fs::path& file) {
   std::error_code not_there;
   const fs::file_status status = fs::status(file, not_there);
@@ -139,7 +139,7 @@ Json description_of(const std::string& interpreter, const std::string& file, con
   reader.at("reads").strings();
   Reach reach = system_reach();
   add_python(reach, python);
-  std::error_code not_there;  // its reader says so
+  std::error_code not_there;  // the reader of the file reports a missing one
   reach.reads.push_back(fs::weakly_canonical(file.substr(0, file.rfind(':')), not_there).parent_path());
   const Confinement confinement(reach);
   python.update(parse_json(answer_of(reader.at("interpreter").string(), file, &confinement), file));

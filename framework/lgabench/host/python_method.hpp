@@ -12,8 +12,8 @@ bool is_python_method(const std::string& word);
 /// Asks the interpreter's own parser what the file says of the class (python/lgabench_method/describe.py).
 /// @throws PluginError with the interpreter's message, or naming what is wrong with id, options or asks.
 PluginInfo describe_python(const std::string& written, const std::string& interpreter);
-/// Of an installed package: the folder that it was installed into, which the method's process may read too, and the id
-/// in place of the class's own.
+/// Describes the class of an installed package. `site` is the folder that it was installed into, which the method's
+/// process may read too; `id` takes the place of the class's own.
 PluginInfo describe_python(const std::string& written, const std::string& interpreter, const fs::path& site,
                            const std::string& id);
 

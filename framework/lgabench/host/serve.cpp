@@ -357,14 +357,14 @@ bool serve(Channel& channel) {
   if (hello->header.contains("perturbation") || hello->header.contains("perceiver"))
     return serve_perturbation(channel, std::move(*hello));
   std::optional<Host> host;
-  if (!told(channel, [&] { host.emplace(channel, *hello); })) return true;
+  if (!report_errors_of(channel, [&] { host.emplace(channel, *hello); })) return true;
   hello.reset();  // its file is mapped by now
   while (const std::optional<Frame> frame = channel.receive()) {
     if (frame->type() == "bye") {
       host->end();
       return true;
     }
-    told(channel, [&] { host->answer(*frame); });
+    report_errors_of(channel, [&] { host->answer(*frame); });
   }
   return false;
 }

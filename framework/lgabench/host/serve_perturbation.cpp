@@ -106,14 +106,14 @@ class PerturbationHost {
 
 bool serve_perturbation(Channel& channel, Frame hello) {
   std::optional<PerturbationHost> host;
-  if (!told(channel, [&] { host.emplace(channel, hello); })) return true;
+  if (!report_errors_of(channel, [&] { host.emplace(channel, hello); })) return true;
   hello = {};  // its file is mapped by now
   while (const std::optional<Frame> frame = channel.receive()) {
     if (frame->type() == "bye") {
       host->end();
       return true;
     }
-    told(channel, [&] { host->answer(*frame); });
+    report_errors_of(channel, [&] { host->answer(*frame); });
   }
   return false;
 }

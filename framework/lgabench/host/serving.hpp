@@ -12,7 +12,7 @@ namespace lgabench {
 
 /// Tells the worker what `call` throws; true if nothing was thrown.
 template <class Call>
-bool told(Channel& channel, Call&& call) {
+bool report_errors_of(Channel& channel, Call&& call) {
   const auto tell = [&channel](const char* kind, const std::string& reason) {
     channel.send({{"type", "error"}, {"kind", kind}, {"reason", reason.substr(0, 2000)}});
   };
@@ -58,7 +58,7 @@ class NotesArithmetic {
 /// The plugin that "hello" names under its kind. @throws PluginError where it is not the one that the worker read.
 PluginInfo named_plugin(const Frame& hello, const char* kind);
 
-/// As serve(), of a perturbation.
+/// Serves a perturbation or a perceiver, as serve() does a method.
 bool serve_perturbation(Channel& channel, Frame hello);
 
 }  // namespace lgabench

@@ -127,7 +127,7 @@ struct Waiting {
 Json to_json(const PhaseCount& message);
 Json to_json(const Complaint& message);
 Json to_json(const Waiting& message);
-/// None where the line is something else: a plugin could write there too.
+/// The message in the line; none where the line is something else: a plugin could write there too.
 std::optional<PhaseCount> read_phase_count(const Json& line);
 std::optional<Complaint> read_complaint(const Json& line);
 std::optional<Waiting> read_waiting(const Json& line);

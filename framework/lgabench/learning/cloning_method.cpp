@@ -175,15 +175,15 @@ std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& d
 std::unique_ptr<Policy> CloningMethod::restore(const std::string& saved, Services& services) {
   const CloningOptions options = read_cloning_options(services.options);
   Archive archive(saved);
-  SavedInputs own;
-  own.learned(archive);
+  SavedInputs saved_inputs;
+  saved_inputs.learned(archive);
   PolicyInputs offered = offered_by(inputs(services.options), options);
   offered.space = own.space;
   PolicyInputs seen = inputs_of(options.policy, offered, own.native);
   Featurizer featurizer(seen, services.actions, services.state);
   std::unique_ptr<Learner> untrained = learner(featurizer.shape(), services);
-  auto policy = std::make_unique<CloningPolicy>(own.native, std::move(offered), std::move(seen), options.policy,
-                                                std::move(featurizer), std::move(untrained));
+  auto policy = std::make_unique<CloningPolicy>(saved_inputs.native, std::move(offered), std::move(seen),
+                                                options.policy, std::move(featurizer), std::move(untrained));
   policy->restore(archive);
   return policy;
 }

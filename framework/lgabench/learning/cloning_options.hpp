@@ -11,8 +11,7 @@ namespace lgabench {
 /// What is trained, where a method has no learner of its own.
 enum class PolicyKind { regression, centroid, heat_map };
 
-/// Those of cloning_method.hpp that every cloning method is trained by. What a descriptor lacks has the value that is
-/// here.
+/// Training options of every cloning method. What a descriptor lacks has the value that is here.
 struct CloningOptions {
   TrainingOptions training;
   Instances instances = Instances::all;
@@ -21,8 +20,8 @@ struct CloningOptions {
   bool points = false;  // policy=point: nothing is trained
 };
 
-/// Those of the paper's network. A learner of a method's own does not read them, and its descriptor may have others of
-/// these names.
+/// Options of the paper's network. A learner of a method's own does not read them, and its descriptor may have others
+/// of these names.
 struct NetworkOptions {
   Architecture architecture;
   bool spot;  // the notebook's: a linear layer of 1000, actions scaled to their bounds
@@ -32,9 +31,10 @@ struct NetworkOptions {
 /// `options` as in Services. @throws InputError naming the option: a value that is none of those above is never taken
 /// for a default, LGABENCH_TRAINING_OPTIONS cannot be lacking.
 CloningOptions read_cloning_options(const Json& options);
-/// Likewise, `picture`: whether the picture is seen beside the goal mask. CloningMethod::inputs() alone asks.
+/// Whether the picture is seen beside the goal mask, by the option `picture`. CloningMethod::inputs() alone asks.
+/// @throws as read_cloning_options().
 bool read_picture_option(const Json& options);
-/// Likewise; none can be lacking.
+/// The options of the paper's network, none of which can be lacking. @throws as read_cloning_options().
 NetworkOptions read_network_options(const Json& options);
 
 }  // namespace lgabench

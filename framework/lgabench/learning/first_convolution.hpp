@@ -14,7 +14,7 @@ class FirstConvolution {
  public:
   /// @pre `kernels` outlives this.
   FirstConvolution(const Layer& layer, const Kernels& kernels);
-  /// For batches of up to `rows`.
+  /// Makes room for batches of up to `rows`.
   void make_room(int rows);
 
   /// Looks for the patches that differ from those of the picture `usual`. Both are the caller's, and are read until the

@@ -62,8 +62,8 @@ void Head::name(const std::vector<const Linear*>& side_by_side, int outs, std::s
 
 void Head::make_room(int rows) {
   for (Input& input : inputs_)
-    if (input.own)
-      for (Numbers* array : {&input.made, &input.gradients}) *array = Numbers(size(rows * input.own->outputs()));
+    if (input.linear)
+      for (Numbers* array : {&input.made, &input.gradients}) *array = Numbers(size(rows * input.linear->outputs()));
   for (Numbers* array : {&joined_, &part_, &joined_gradients_, &outputs_}) *array = Numbers(size(rows * padded_hidden));
 }
 
@@ -75,8 +75,8 @@ const float* Head::forward(const std::vector<const float*>& inputs, int rows) {
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     Input& input = inputs_[i];
     const float* in = inputs[i];
-    if (input.own) {
-      input.own->forward(in, parameters_[input.own_bias], input.made, rows);
+    if (input.linear) {
+      input.linear->forward(in, parameters_[input.linear_bias], input.made, rows);
       in = input.made;
     }
     input.share->forward(in, no_bias, part_, rows);
@@ -99,13 +99,13 @@ void Head::backward(const std::vector<const float*>& inputs, const float* gradie
   kernels_.sum_rows(gradient, parameters_.gradient(joined_bias_), rows_, last_ ? padded_hidden : padded_action);
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     Input& input = inputs_[i];
-    if (!input.own) {
+    if (!input.linear) {
       input.share->backward(inputs[i], gradient, input_gradients[i], rows_);
       continue;
     }
     input.share->backward(input.made, gradient, input.gradients, rows_);
-    kernels_.sum_rows(input.gradients, parameters_.gradient(input.own_bias), rows_, input.own->outputs());
-    input.own->backward(inputs[i], input.gradients, input_gradients[i], rows_);
+    kernels_.sum_rows(input.gradients, parameters_.gradient(input.linear_bias), rows_, input.linear->outputs());
+    input.linear->backward(inputs[i], input.gradients, input_gradients[i], rows_);
   }
 }
 

@@ -17,7 +17,7 @@ class Head {
   /// begin uniform within 1/sqrt(fan in), as PyTorch's default; `released` with orthogonal weights and biases of 0.
   /// @pre both references outlive this.
   Head(const NetworkShape& shape, Parameters& parameters, const Kernels& kernels);
-  /// For batches of up to `rows`.
+  /// Makes room for batches of up to `rows`.
   void make_room(int rows);
 
   /// Outputs, rows x 16 of which NetworkShape::actions count, valid until the next call. Inputs are each tower's
@@ -30,8 +30,8 @@ class Head {
 
  private:
   struct Input {
-    std::optional<Linear> own{};  // a layer of its own, before the join
-    std::size_t own_bias = 0;
+    std::optional<Linear> linear{};  // a layer of its own, before the join
+    std::size_t linear_bias = 0;
     Numbers made{}, gradients{};  // what that makes
     std::optional<Linear> share{};
   };

@@ -111,7 +111,10 @@ struct HeatMap::Impl {
       const int channels = shape.pictures[i].channels;
       if (is_mask(shape.pictures[i])) {
         look_at_mask(picture, shape.pictures[i].size, number, view);
-        if (i == mask) view.mask = picture, set_prior(number, view);
+        if (i == mask) {
+          view.mask = picture;
+          set_prior(number, view);
+        }
         number += 2;
         continue;
       }

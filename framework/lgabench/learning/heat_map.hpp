@@ -50,7 +50,8 @@ class HeatMap : public Learner {
   std::vector<float> parameters() const override;
   bool learned(Archive& archive) override;
 
-  /// For tests, of the first network. @pre begin(). set_parameters() @throws InputError for another number of them.
+  /// Parameters and gradients of the first network, for tests. @pre begin(). set_parameters() @throws InputError for
+  /// another number of them.
   void set_parameters(const std::vector<float>& parameters);
   std::vector<float> gradients() const;
 

@@ -157,7 +157,10 @@ const std::vector<float>& HeatMapNetwork::groups(Vec2 taken_m) {
       c.mass += *feature++;
     }
   }
-  for (Centroid& c : centroids_) c.x /= c.mass, c.y /= c.mass;
+  for (Centroid& c : centroids_) {
+    c.x /= c.mass;
+    c.y /= c.mass;
+  }
   const float* weight = parameters_[scores_];
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     double score = parameters_[score_biases_][g];

@@ -33,7 +33,7 @@ class HeatMapNetwork {
   /// Each group's probability after the last map(), given the taken point.
   const std::vector<float>& groups(Vec2 taken_m);
 
-  /// Before the first teach() of a batch.
+  /// Called before the first teach() of a batch.
   void clear_gradients();
   /// Cross entropy of the last map() to `wanted`, a probability of each cell, and of the groups to `group`; where there
   /// is a `like`, of each cell too, `penalty` times the cross entropy to that. Adds `weight` times its gradients.

@@ -62,7 +62,7 @@ struct Kernels {
                std::size_t count);
 };
 
-/// Those that this processor can run, the fastest first. Thread-safe.
+/// Kernels that this processor can run, the fastest first. Thread-safe.
 const std::vector<const Kernels*>& available_kernels();
 
 }  // namespace lgabench

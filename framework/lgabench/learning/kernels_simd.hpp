@@ -69,7 +69,7 @@ LGABENCH_INLINE inline void for_vectors(int count, const Use& use) {
   for (; first < count; first += lanes) use(Constant<1>(), first + lanes < count ? first : count - lanes);
 }
 
-// Likewise for the parts of a window, where windows that lie `step` numbers apart share places of the input: what they
+// Visits the parts of a window, where windows that lie `step` numbers apart share places of the input: what they
 // share is added in the order of 16 lanes, which take blocks of 32 numbers, and window after window within a block.
 // Narrower vectors keep that order by taking a block's later part first.
 template <class Use>

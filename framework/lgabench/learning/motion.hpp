@@ -30,8 +30,8 @@ bool mostly_on_target(const std::vector<Demonstrated>& all, std::size_t place);
 /// Each group's demonstrations, by their numbers.
 using Groups = std::vector<std::vector<std::size_t>>;
 Groups one_group(const std::vector<Demonstrated>& all);
-/// By the direction from the first place to the second: unit vectors within .15 of the group's first. One group where
-/// actions have no second place.
+/// Groups by the direction from the first place to the second: unit vectors within .15 of the group's first. One group
+/// where actions have no second place.
 Groups by_push(const ActionSpace& actions, const std::vector<Demonstrated>& all);
 
 /// Means of the numbers, executable(). @pre there is one.

@@ -28,7 +28,7 @@ class Network : public Learner {
   /// (out, in, row, column), bias and, with batch normalisation, scale and shift; then the layers of single inputs (the
   /// text's; `released` the towers'), the one that joins them, and `released` with text the last.
   std::vector<float> parameters() const override;
-  /// In the same order. @throws InputError for another number of them.
+  /// Sets the parameters, in the same order. @throws InputError for another number of them.
   void set_parameters(const std::vector<float>& parameters);
   /// Gradients of the last backward(), in the same order. That of a bias before batch normalisation is 0.
   std::vector<float> gradients() const;

@@ -22,9 +22,9 @@ class Numbers {
     if (!values_) throw std::bad_alloc();
     std::memset(values_.get(), 0, count * sizeof(float));
   }
-  /// The first; owned by this. Null if there are none.
+  /// Pointer to the first number; owned by this. Null if there are none.
   operator float*() { return values_.get(); }
-  /// As above, read only.
+  /// Pointer to the first number, read only; owned by this. Null if there are none.
   operator const float*() const { return values_.get(); }
 
  private:

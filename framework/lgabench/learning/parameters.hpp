@@ -28,15 +28,15 @@ class Parameters {
   void finish();
 
   const float* operator[](std::size_t place) const { return values_ + static_cast<std::ptrdiff_t>(place); }
-  /// For layers that add to them.
+  /// Called before layers add to the gradients.
   void clear_gradients();
   float* gradient(std::size_t place) { return gradients_ + static_cast<std::ptrdiff_t>(place); }
 
   std::vector<float> values() const { return in_pytorchs_order(values_); }
   std::vector<float> gradients() const { return in_pytorchs_order(gradients_); }
-  /// In PyTorch's order. @throws InputError for another number of them.
+  /// Sets all values, given in PyTorch's order. @throws InputError for another number of them.
   void set(const std::vector<float>& values);
-  /// Likewise.
+  /// Writes all values to the archive, or sets them from it, in PyTorch's order. @throws as set().
   void learned(Archive& archive) {
     std::vector<float> all = values();
     archive(all);

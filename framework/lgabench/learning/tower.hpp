@@ -20,7 +20,7 @@ class Tower {
   /// PyTorch's default, and with batch normalisation scale and shift. @pre both references outlive this.
   /// @throws InputError if `channels` is none of 1, 3 and 4.
   Tower(int channels, Architecture architecture, Parameters& parameters, const Kernels& kernels);
-  /// For batches of up to `rows`.
+  /// Makes room for batches of up to `rows`.
   void make_room(int rows);
 
   /// Features of the pictures, rows x 160, channels last: valid until the next call. What the pictures share with

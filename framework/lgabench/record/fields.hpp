@@ -17,7 +17,7 @@ void visit(const Slot& slot, TrainOn& through, const Form& form);
 /// A Competitor's kind.
 inline constexpr std::array competitor_kinds{"method", "reference"};
 
-/// Of Reading::segments.
+/// The form of Reading::segments.
 inline Form segments_form(const Reading& reading) {
   static constexpr std::array words{Reading::simulator, Reading::difference};
   return one_of(words, when(reading.segments != Reading::simulator), "\"simulator\" or \"difference\"");

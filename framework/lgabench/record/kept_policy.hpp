@@ -13,8 +13,8 @@ struct KeptPolicy {
 
 std::string to_text(const KeptPolicy& policy);
 
-/// That of a cell's directory. No link is followed. @throws InputError naming the file where it is not there, or is not
-/// as it was written.
+/// The policy kept in a cell's directory. No link is followed. @throws InputError naming the file where it is not
+/// there, or is not as it was written.
 KeptPolicy read_kept_policy(const std::filesystem::path& cell);
 
 }  // namespace lgabench

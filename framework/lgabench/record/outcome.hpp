@@ -26,7 +26,7 @@ std::optional<Outcome> read_outcome(char letter, char attribution, const std::ve
 
 /// One letter for both, in an entry: the outcome's, a capital where the failure is attributed to the abstraction.
 char entry_letter(const Episode& episode, const std::vector<std::string>& words);
-/// What it says: no attribution where it is small. None for a letter that says nothing.
+/// What the letter says: no attribution where it is small. None for a letter that says nothing.
 std::optional<Outcome> read_entry_letter(char letter, const std::vector<std::string>& words);
 /// The letter of a cell that its method failed, in place of each episode's.
 constexpr char failed_cell_letter = '!';

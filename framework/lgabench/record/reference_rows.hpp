@@ -26,7 +26,7 @@ struct ReferenceRow {
 /// The row that takes any object it sees, with which the first sentence of a report and the leaderboard compare.
 inline constexpr const char* random_object = "random_object";
 
-/// In the order in which a run has them.
+/// All reference rows, in the order in which a run has them.
 const std::vector<ReferenceRow>& reference_rows();
 /// nullptr where the id is none of theirs.
 const ReferenceRow* find_reference_row(const std::string& id);

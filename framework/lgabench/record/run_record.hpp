@@ -46,7 +46,7 @@ struct RunRecord {
   Json merged = nullptr;           // of a merged run: command, machine and start of each part
 
   Processor processor() const;
-  /// Of a merged run those of all parts, each once; else processor() alone.
+  /// The processors of all parts of a merged run, each once; else processor() alone.
   std::vector<Processor> processors() const;
   /// The SHA-256 of each program that the record names, and of each plugin by its kind and id: "method lga".
   Json programs() const;
@@ -60,7 +60,7 @@ bool is_run(const std::filesystem::path& directory);
 /// The record of the run in that directory. No link is followed.
 /// @throws InputError naming file and place for what is missing or malformed, and for a run of 0.1 or 0.2.
 RunRecord read_run_record(const std::filesystem::path& run);
-/// Likewise of a JSON text that was read from `file`.
+/// The record in JSON that was read from `file`. @throws as read_run_record(run).
 RunRecord read_run_record(const Json& json, const std::string& file);
 
 Json to_json(const RunRecord& record);

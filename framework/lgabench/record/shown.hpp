@@ -19,7 +19,8 @@ struct ShownScene {
 
 /// The file's text.
 std::string to_text(const std::vector<ShownScene>& scenes);
-/// None where the cell has no such file. No link is followed. @throws InputError
+/// The scenes that a cell's policy showed; none where the cell has no such file. No link is followed. @throws
+/// InputError
 std::vector<ShownScene> read_shown_scenes(const std::filesystem::path& cell);
 
 }  // namespace lgabench

@@ -24,7 +24,7 @@ struct SuiteClaim {
   std::vector<double> levels;  // its values, which grow
 };
 
-/// Of {"claims": [...]}. @throws InputError with file and place.
+/// The claims of {"claims": [...]}. @throws InputError with file and place.
 std::vector<SuiteClaim> read_suite_claims(const Json& json, const std::string& file);
 
 /// What claims/NAME.json says beside the suite's file NAME.json; null where there is none. @throws InputError where

@@ -8,7 +8,7 @@
 namespace lgabench::statistics {
 
 std::string AboutSuite::arm(const std::string& name) const {
-  if (const auto own = arms.find(name); own != arms.end()) return own->second;
+  if (const auto found = arms.find(name); found != arms.end()) return found->second;
   std::string text, longest;
   for (const auto& [arm, words] : arms)
     if (name.rfind(arm + "_", 0) == 0 && arm.size() > longest.size()) longest = arm, text = words;
@@ -16,7 +16,7 @@ std::string AboutSuite::arm(const std::string& name) const {
 }
 
 std::string AboutSuite::arm_title(const std::string& name) const {
-  if (const auto own = arm_titles.find(name); own != arm_titles.end()) return own->second;
+  if (const auto found = arm_titles.find(name); found != arm_titles.end()) return found->second;
   std::string text = name, longest;
   for (const auto& [arm, ignored] : arms) {
     if (name.rfind(arm + "_", 0) != 0 || arm.size() <= longest.size()) continue;
@@ -39,13 +39,13 @@ fs::path installed_suite(const std::string& id) {
   return is_name && fs::exists(file) ? file : fs::path();
 }
 
-AboutSuite about_suite(const std::string& id, const Json& own) {
+AboutSuite about_suite(const std::string& id, const Json& of_run) {
   AboutSuite about;
   about.title = id;
   const fs::path file = installed_suite(id);
   Json json = file.empty() ? Json::object() : read_json(file);
-  if (!own.is_null()) json["about"] = own;
-  const JsonReader suite(json, own.is_null() ? file.string() : "the suite of the run");
+  if (!of_run.is_null()) json["about"] = of_run;
+  const JsonReader suite(json, of_run.is_null() ? file.string() : "the suite of the run");
   if (suite.has("options")) about.options = suite.at("options").json();
   if (!suite.has("about")) return about;
   const JsonReader words = suite.at("about");

@@ -31,9 +31,9 @@ struct AboutSuite {
 /// The file of an installed suite; empty where there is none of that name.
 fs::path installed_suite(const std::string& id);
 
-/// What is said about the suite of a run: `own`, if the run has it (else null), or what the installed suite says. For
-/// any other suite it is the title alone, which is its id. @throws InputError for an `own` that is not as docs/formats
-/// says.
-AboutSuite about_suite(const std::string& id, const Json& own = nullptr);
+/// What is said about the suite of a run: `of_run`, what the run says (else null), or what the installed suite says.
+/// For any other suite it is the title alone, which is its id. @throws InputError for an `of_run` that is not as
+/// docs/formats says.
+AboutSuite about_suite(const std::string& id, const Json& of_run = nullptr);
 
 }  // namespace lgabench::statistics

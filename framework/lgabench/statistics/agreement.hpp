@@ -59,7 +59,7 @@ std::string to_string(Reproduction verdict);
 /// The one rule for `verify` and the leaderboard. By chance: no row of pooled() differs, nor all rows together.
 /// `cells`: row and agreement. @pre not empty
 Reproduction verdict_of(const std::vector<std::pair<std::string, CellAgreement>>& cells);
-/// Likewise of cells that are not all identical, and may differ.
+/// The verdict on cells that are not all identical, and may differ.
 Reproduction verdict_of(int flips, int episodes, const std::vector<PooledAgreement>& rows);
 
 /// Pools the cells of each row in which an episode changed, by name, and all of them where there are several such rows.

@@ -275,41 +275,42 @@ Field only(const Field& field, const std::vector<std::string>& scenarios) {
   return some;
 }
 
-Claim measured_claim(const SuiteClaim& own, const Field& all) {
-  const Field field = only(all, own.scenarios);
+Claim measured_claim(const SuiteClaim& stated, const Field& all) {
+  const Field field = only(all, stated.scenarios);
   Claim claim;
-  claim.id = own.id;
-  claim.statement = own.statement;
-  claim.refuted_if = own.refuted_if;
+  claim.id = stated.id;
+  claim.statement = stated.statement;
+  claim.refuted_if = stated.refuted_if;
   claim.layout = all.layout;
   claim.engine = all.engine;
   const std::vector<int> every(field.demonstrations.begin(), field.demonstrations.end());
-  for (const std::string& arm : own.arms.empty() ? field.arms : own.arms)
-    for (const int n : own.demonstrations.empty() ? every : own.demonstrations) {
+  for (const std::string& arm : stated.arms.empty() ? field.arms : stated.arms)
+    for (const int n : stated.demonstrations.empty() ? every : stated.demonstrations) {
       if (!contains(field.arms, arm)) {
         ClaimedDifference missing;
-        missing.above = own.above;
-        missing.below = own.below;
+        missing.above = stated.above;
+        missing.below = stated.below;
         missing.arm = arm;
         missing.demonstrations = n;
         missing.these.reason = missing.alike.reason = "no arm " + arm;
         claim.differences.push_back(missing);
       } else {
         claim.differences.push_back(
-            own.test == SuiteClaim::Test::slope
-                ? measured_slope(field, own, arm, n)
-                : measured(field, own.id, claimed_method(own.above), claimed_method(own.below), arm, n));
+            stated.test == SuiteClaim::Test::slope
+                ? measured_slope(field, stated, arm, n)
+                : measured(field, stated.id, claimed_method(stated.above), claimed_method(stated.below), arm, n));
       }
     }
   return claim;
 }
 
 // Where a margin shifts it, p is from the interval's width, as if it were a normal distribution's.
-Side side_of(const SuiteClaim& own, Tested& tested) {
+Side side_of(const SuiteClaim& stated, Tested& tested) {
   using Kind = SuiteClaim::Test;
-  if (own.test == Kind::ordering || own.test == Kind::slope) return side_of(tested);
+  if (stated.test == Kind::ordering || stated.test == Kind::slope) return side_of(tested);
   const Change& change = *tested.change;
-  const double ahead = own.margin - (own.test == Kind::equivalence ? std::abs(change.difference) : change.difference);
+  const double ahead =
+      stated.margin - (stated.test == Kind::equivalence ? std::abs(change.difference) : change.difference);
   const double error = (change.interval.high - change.interval.low) / (2 * z_95);
   if (error <= 0) return {&tested, ahead, ahead == 0 ? 1. : 0.};
   return {&tested, ahead, std::erfc(std::abs(ahead) / error / std::sqrt(2.0))};
@@ -324,14 +325,14 @@ std::vector<SuiteClaim> own_claims(const RunResults& run) {
 }
 
 // Each on the field; their differences, all together, are a family of tests.
-std::vector<Claim> test_own(const std::vector<SuiteClaim>& own, const Field& field) {
-  std::vector<Claim> claims(own.size());
-  in_parallel(own.size(), [&](std::size_t i) { claims[i] = measured_claim(own[i], field); });
+std::vector<Claim> test_own(const std::vector<SuiteClaim>& stated, const Field& field) {
+  std::vector<Claim> claims(stated.size());
+  in_parallel(stated.size(), [&](std::size_t i) { claims[i] = measured_claim(stated[i], field); });
   for (const Test test : tests) {
     std::vector<Side> family;
-    for (std::size_t i = 0; i < own.size(); ++i)
+    for (std::size_t i = 0; i < stated.size(); ++i)
       for (ClaimedDifference& d : claims[i].differences)
-        if (Tested& t = d.*test; t.change) family.push_back(side_of(own[i], t));
+        if (Tested& t = d.*test; t.change) family.push_back(side_of(stated[i], t));
     judge(family);
   }
   for (Claim& claim : claims) conclude(claim, field);
@@ -377,10 +378,10 @@ std::string claims_title(const std::vector<Claim>& claims) {
 
 std::vector<Claim> test_claims(const RunResults& run) {
   const auto fields = fields_of(run);
-  if (const std::vector<SuiteClaim> own = own_claims(run); !own.empty()) {
+  if (const std::vector<SuiteClaim> stated = own_claims(run); !stated.empty()) {
     std::vector<Claim> claims;
     for (const auto& item : fields)
-      for (Claim& claim : test_own(own, item.second)) claims.push_back(std::move(claim));
+      for (Claim& claim : test_own(stated, item.second)) claims.push_back(std::move(claim));
     return claims;
   }
   const std::vector<PaperClaim> paper = paper_claims();

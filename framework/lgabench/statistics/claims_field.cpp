@@ -230,7 +230,11 @@ ClaimedDifference measured_slope(const Field& field, const SuiteClaim& claim, co
       pair_policies(*of_all, *second, arm);  // the same scenes at each level
       PolicyPair pair = pair_policies(*first, *second, arm);
       const std::vector<double> differences = pair.differences();
-      if (i == 0) slopes = pair, slopes.first.assign(differences.size(), 0), slopes.second = slopes.first;
+      if (i == 0) {
+        slopes = pair;
+        slopes.first.assign(differences.size(), 0);
+        slopes.second = slopes.first;
+      }
       for (std::size_t scene = 0; scene < differences.size(); ++scene)
         slopes.second[scene] += weights[i] * differences[scene] / reach;
       if (i + 1 == weights.size()) pairs.add(item.first.first, slopes);

@@ -14,9 +14,9 @@ namespace lgabench::statistics {
 
 /// The cells of one (layout, engine), by row, demonstrations, scenario and training seed.
 struct Field {
-  /// By participant, "" where nobody was asked.
+  /// Cells by participant, "" where nobody was asked.
   using People = std::map<std::string, const CellResult*>;
-  /// By scenario and training seed.
+  /// Cells by scenario and training seed.
   using Policies = std::map<std::pair<std::string, long long>, People>;
 
   std::string layout, engine;
@@ -49,7 +49,7 @@ ClaimedDifference measured_rows(const Field& field, const std::string& claim, co
 /// `below`; paired as above, all levels together.
 ClaimedDifference measured_slope(const Field& field, const SuiteClaim& claim, const std::string& arm, int n);
 
-/// As one that enters means.
+/// Whether the cell has the arm as one that enters means.
 bool has_arm(const CellResult& cell, const std::string& arm);
 
 }  // namespace lgabench::statistics

@@ -57,7 +57,11 @@ std::optional<Interval> slope_interval(const ErrorCurve& curve, const std::vecto
       const auto first = levels.find(curve.points.front().p), level = levels.find(curve.points[i].p);
       if (first == levels.end() || level == levels.end() || first->second->failed || level->second->failed) return {};
       PolicyPair pair = pair_policies(*first->second, *level->second, curve.arm);
-      if (i == 0) slopes = pair, slopes.first.assign(pair.second.size(), 0), slopes.second = slopes.first;
+      if (i == 0) {
+        slopes = pair;
+        slopes.first.assign(pair.second.size(), 0);
+        slopes.second = slopes.first;
+      }
       for (std::size_t scene = 0; scene < pair.second.size(); ++scene)
         slopes.second[scene] += weights[i] * pair.second[scene] / reach;
     }
@@ -115,7 +119,10 @@ Json to_json(const ErrorCurve& curve) {
   Json json{{"layout", curve.layout}, {"engine", curve.engine}, {"arm", curve.arm},
             {"method", curve.method}, {"errors", curve.kind},   {"demonstrations", curve.demonstrations},
             {"points", points},       {"slope", curve.slope}};
-  if (curve.interval) json["low"] = curve.interval->low, json["high"] = curve.interval->high;
+  if (curve.interval) {
+    json["low"] = curve.interval->low;
+    json["high"] = curve.interval->high;
+  }
   return json;
 }
 

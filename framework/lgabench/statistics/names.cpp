@@ -95,7 +95,7 @@ const Known* find(const std::string& method) {
 
 std::string display_name(const std::string& method) {
   std::vector<std::string> words = row_words(without_selected_by(method));
-  if (const Known* own = find(method)) words.front() = own->name;
+  if (const Known* known = find(method)) words.front() = known->name;
   if (selects_alone(method)) words.front() = "selected by " + words.front();
   return fmt::format("{}", fmt::join(words, " "));
 }
@@ -128,7 +128,7 @@ std::string capital(std::string text) {
 }
 
 int display_rank(const std::string& method) {
-  if (const Known* own = find(method)) return own->rank;
+  if (const Known* known = find(method)) return known->rank;
   return static_cast<int>(
       std::count_if(known().begin(), known().end(), [](const auto& item) { return !item.second.colour.empty(); }));
 }
@@ -137,8 +137,8 @@ bool ByRank::operator()(const std::string& a, const std::string& b) const {
   return std::tuple(display_rank(a), a) < std::tuple(display_rank(b), b);
 }
 
-MethodStyles::MethodStyles(const std::vector<std::string>& methods, std::map<std::string, std::string> told)
-    : told_(std::move(told)) {
+MethodStyles::MethodStyles(const std::vector<std::string>& methods, std::map<std::string, std::string> shown_names)
+    : told_(std::move(shown_names)) {
   std::vector<std::string> ordered = methods, strange;
   std::sort(ordered.begin(), ordered.end(), ByRank());
   std::map<std::string, std::size_t> variants;  // so far, by id
@@ -148,10 +148,10 @@ MethodStyles::MethodStyles(const std::vector<std::string>& methods, std::map<std
     const std::size_t variant = variants[id]++;
     std::size_t mark = 0;
     MethodStyle& style = styles_[method];
-    if (const Known* own = find(method)) {
-      style.colour = own->colour;
-      style.dashes = own->dashes;
-      mark = own->mark;
+    if (const Known* known = find(method)) {
+      style.colour = known->colour;
+      style.dashes = known->dashes;
+      mark = known->mark;
     } else {
       if (variant == 0) strange.push_back(id);
       mark = static_cast<std::size_t>(std::find(strange.begin(), strange.end(), id) - strange.begin());

@@ -43,11 +43,12 @@ struct MethodStyle {
 /// none of its own takes a spare one.
 class MethodStyles {
  public:
-  /// `told`: a row's name -> the name that readers are shown in its place.
-  explicit MethodStyles(const std::vector<std::string>& methods = {}, std::map<std::string, std::string> told = {});
+  /// `shown_names`: a row's name -> the name that readers are shown in its place.
+  explicit MethodStyles(const std::vector<std::string>& methods = {},
+                        std::map<std::string, std::string> shown_names = {});
   /// What readers are shown of a row's name.
   std::string name(const std::string& method) const;
-  /// That of a reference row for a name that is none of them.
+  /// The style of a row; a reference row's for a name that is none of `methods`.
   const MethodStyle& operator()(const std::string& method) const;
 
  private:

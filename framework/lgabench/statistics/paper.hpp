@@ -42,7 +42,7 @@ struct ClaimedMethod {
   std::string text() const;
 };
 
-/// Of "ID+OPTION=VALUE+...", as rows are named.
+/// Reads "ID+OPTION=VALUE+...", as rows are named.
 ClaimedMethod claimed_method(const std::string& row);
 
 /// A claim of the paper, as data.
@@ -62,7 +62,7 @@ struct PaperClaim {
   double margin = 0;                        // of an equivalence
 };
 
-/// In their order. @throws InputError likewise.
+/// The paper's claims, in their order. @throws InputError for a file that is not as docs/formats says.
 std::vector<PaperClaim> paper_claims();
 
 }  // namespace lgabench::statistics

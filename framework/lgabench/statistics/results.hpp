@@ -29,7 +29,7 @@ struct CommandResult {
   bool ambiguous = false;  // as the scenario says
 };
 
-/// Of a perturbed arm's episodes that were played, those in which the policy's whole input was the control's.
+/// How many of a perturbed arm's played episodes (`of`) had the control's input as the policy's whole input.
 struct UnchangedInputs {
   int unchanged = 0, of = 0;
 };
@@ -63,7 +63,7 @@ struct CellResult {
   Json timing;  // as in timing.json
 
   bool is_reference() const { return kind == "reference"; }
-  /// Those that are not ambiguous.
+  /// The arms that are not ambiguous.
   std::vector<std::string> arms_in_means() const;
 };
 

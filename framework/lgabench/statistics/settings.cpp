@@ -84,10 +84,10 @@ struct Rows {
 
 // Those that a row's name says.
 std::set<std::string> told_options(const std::string& name) {
-  std::set<std::string> told;
+  std::set<std::string> named;
   const std::vector<std::string> words = row_words(name);
-  for (std::size_t i = 1; i < words.size(); ++i) told.insert(words[i].substr(0, words[i].find('=')));
-  return told;
+  for (std::size_t i = 1; i < words.size(); ++i) named.insert(words[i].substr(0, words[i].find('=')));
+  return named;
 }
 
 bool is_set(const RunResults& run, const std::string& row, const std::string& option) {
@@ -96,8 +96,8 @@ bool is_set(const RunResults& run, const std::string& row, const std::string& op
 
 bool suite_sets(const Json& options, const CellResult& cell, const std::string& option) {
   for (const std::string& whose : {cell.id, std::string("*")})
-    if (const auto own = options.value(whose, Json::object()); own.contains(option))
-      return own.at(option) == cell.options.at(option);
+    if (const auto values = options.value(whose, Json::object()); values.contains(option))
+      return values.at(option) == cell.options.at(option);
   return false;
 }
 
@@ -148,11 +148,11 @@ std::map<std::string, std::string> told_names(const RunResults& run) {
   std::map<std::string, std::string> names;
   for (const auto& [row, cell] : rows.cells) {
     std::string& name = names[row] = row;
-    const std::set<std::string> told = told_options(row);
+    const std::set<std::string> named = told_options(row);
     for (const auto& [option, value] : cell->options.items()) {
-      if (told.count(option) > 0) continue;
-      const bool own = is_set(run, row, option) && !rows.all_have(option) && !suite_sets(suite, *cell, option);
-      if (rows.differ(option) || own) name += "+" + option + "=" + option_text(value);
+      if (named.count(option) > 0) continue;
+      const bool is_chosen = is_set(run, row, option) && !rows.all_have(option) && !suite_sets(suite, *cell, option);
+      if (rows.differ(option) || is_chosen) name += "+" + option + "=" + option_text(value);
     }
   }
   return names;
@@ -170,9 +170,9 @@ std::vector<std::map<std::string, std::string>> told_names(const std::vector<con
     names.push_back(told_names(*runs[i]));
     for (auto& [row, name] : names.back()) {
       const CellResult& cell = *all[i].cells.at(row);
-      const std::set<std::string> told = told_options(name);
+      const std::set<std::string> named = told_options(name);
       for (const auto& [option, value] : cell.options.items())
-        if (told.count(option) == 0 && values.at({cell.id, option}).size() > 1)
+        if (named.count(option) == 0 && values.at({cell.id, option}).size() > 1)
           name += "+" + option + "=" + option_text(value);
     }
   }

@@ -26,8 +26,8 @@ std::vector<std::string> settings(const RunResults& run);
 /// own design sets nor all rows share. "lga" -> "lga+policy=heat_map".
 std::map<std::string, std::string> told_names(const RunResults& run);
 
-/// The same for rows that stand in one table with those of other runs: with the options in which two rows of one method
-/// differ, of whichever run. One map for each run.
+/// told_names() of rows that stand in one table with those of other runs: with the options in which two rows of one
+/// method differ, of whichever run. One map for each run.
 std::vector<std::map<std::string, std::string>> told_names(const std::vector<const RunResults*>& runs);
 
 /// Options beside the plugins' defaults that all methods of the run share: ("policy", "heat_map").

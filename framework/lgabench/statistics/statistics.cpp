@@ -166,7 +166,10 @@ std::vector<Change> least_squares(const std::vector<std::vector<double>>& rows, 
       }
     }
     const double by = square[i][i];
-    for (std::size_t k = 0; k < p; ++k) square[i][k] /= by, inverse[i][k] /= by;
+    for (std::size_t k = 0; k < p; ++k) {
+      square[i][k] /= by;
+      inverse[i][k] /= by;
+    }
   }
   std::vector<double> coefficients(p);
   for (std::size_t i = 0; i < p; ++i)

@@ -45,7 +45,8 @@ struct PhiOfCommand {
 Json to_json(const PhiOfCommand& phi);
 /// null where nothing was selected.
 Json to_json(const std::vector<PhiOfCommand>& phi);
-/// Of every command that the arm gives, those for which a cell selected. @pre `cells` differ in seed or participant
+/// What was selected for each command that the arm gives, where a cell selected. @pre `cells` differ in seed or
+/// participant
 std::vector<PhiOfCommand> phi_of(const std::vector<const CellResult*>& cells, const std::string& arm);
 
 /// What a method did in one arm at one number of demonstrations, in one scenario or on the mean over all of them.
@@ -110,7 +111,7 @@ struct Table {
   /// Ids of a scenario's methods, or of its reference rows, in order.
   std::vector<std::string> methods(const std::string& scenario) const { return ids(scenario, "method"); }
   std::vector<std::string> references(const std::string& scenario) const { return ids(scenario, "reference"); }
-  /// Those that have the arm and whose words in it are not ambiguous; a mean in an arm is over these.
+  /// Scenarios that have the arm and whose words in it are not ambiguous; a mean in an arm is over these.
   std::vector<std::string> scenarios_with(const std::string& arm) const;
   /// "mean over 3 scenarios" for the mean, else the scenario's own id.
   std::string title(const std::string& scenario) const;
@@ -118,7 +119,7 @@ struct Table {
   bool perturbs(const std::string& arm) const;
   /// What readers are shown of the arm: the id where there is nothing else.
   std::string arm_title(const std::string& arm) const;
-  /// The same at the head of a column: "similar object (1 of 3)" for an arm of one of three scenarios.
+  /// arm_title() at the head of a column: "similar object (1 of 3)" for an arm of one of three scenarios.
   std::string arm_head(const std::string& arm) const;
   /// "layout cells, engine mujoco"
   std::string title() const;

@@ -11,7 +11,7 @@
 
 namespace lgabench::cli {
 
-/// Those of the cells that have failures whose causes could be known, and are not. @throws InputError for a cell that
+/// The cells that have failures whose causes could be known, and are not. @throws InputError for a cell that
 /// cannot be read.
 std::vector<Recorded> without_causes(const std::vector<Recorded>& cells);
 

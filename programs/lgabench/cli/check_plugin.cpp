@@ -111,8 +111,8 @@ void judge_id(const PluginInfo& plugin, const Catalogue& catalogue, CheckReport&
 
 // Whether lgabench itself has another thing of that name.
 void judge_name(const PluginInfo& plugin, CheckReport& report) {
-  const std::vector<std::string> own = perturbation_ids({});
-  if (plugin.kind == "perturbation" && contains(own, plugin.id))
+  const std::vector<std::string> shipped = perturbation_ids({});
+  if (plugin.kind == "perturbation" && contains(shipped, plugin.id))
     report.problem("id", fmt::format("{} is an axis of lgabench's own", plugin.id),
                    "take another: it would be refused");
   const std::vector<std::string>& readers = names_read();

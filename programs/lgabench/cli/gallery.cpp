@@ -105,7 +105,10 @@ Sheet sheet(const std::vector<Tile>& tiles, int across) {
   std::string header, rule, body;
   Json names = Json::array();
   for (const Tile& tile : tiles) names.push_back(tile.caption);
-  for (int i = 0; i < across; ++i) header += "| ", rule += "| --- ";
+  for (int i = 0; i < across; ++i) {
+    header += "| ";
+    rule += "| --- ";
+  }
   for (int i = 0; i < across * down; ++i) {
     const bool ends_row = i % across == across - 1;
     if (i < count) {

@@ -83,15 +83,15 @@ class Verb {
   std::set<std::string> rare_;
 };
 
-/// Of the command line's words behind the program. @throws CLI::ValidationError for a list such as "a,,b", whose empty
-/// item CLI11 would drop.
+/// Checks the command line's words behind the program. @throws CLI::ValidationError for a list such as "a,,b", whose
+/// empty item CLI11 would drop.
 void expect_no_gaps(const CLI::App& app, const std::vector<std::string>& words);
 
 /// Options of a command with several actions whose help begins with some of these ("build, check: documents that ...")
 /// belong to them alone. @throws InputError for one that was given beside another `action`.
 void expect_options_of(const CLI::App& verb, const std::string& action, const std::vector<std::string>& actions);
 
-/// In the order in which they are shown; options that nobody arranged come last.
+/// Groups of options in the order in which they are shown; options that nobody arranged come last.
 std::vector<OptionGroup> option_groups(const CLI::App& app);
 
 /// The commands that are shown, by the title they stand below.

@@ -220,7 +220,7 @@ class Steps {
   Steps(const Steps&) = delete;
   Steps& operator=(const Steps&) = delete;
 
-  leaderboard::Told told() {
+  leaderboard::OnProgress on_progress() {
     return [this](const char* what, std::size_t done, std::size_t of, const char* things) {
       const auto now = Clock::now();
       if (!terminal_ && now - told_ < std::chrono::seconds(30)) return;
@@ -242,7 +242,7 @@ int check(const LeaderboardArguments& a) {
   leaderboard::Checked checked;
   {
     Steps steps;
-    options.told = steps.told();
+    options.on_progress = steps.on_progress();
     checked = leaderboard::check(a.board, options);
   }
   to_stdout("{} entr{}, {} problem{}\n", checked.entries, checked.entries == 1 ? "y" : "ies", checked.problems.size(),
@@ -254,7 +254,7 @@ int build(const LeaderboardArguments& a) {
   std::vector<fs::path> files;
   {
     Steps steps;
-    files = leaderboard::build(a.board, a.documents, steps.told());
+    files = leaderboard::build(a.board, a.documents, steps.on_progress());
   }
   for (const fs::path& file : files) to_stdout("{}\n", file.string());
   if (a.archive.empty()) return ok;

@@ -22,7 +22,7 @@ namespace lgabench::cli {
 namespace {
 
 struct NewSuiteArguments {
-  NewScenario own;  // its name: the suite's
+  NewScenario scenario;  // its name: the suite's
   std::string title, question;
   Words scenarios;
   fs::path directory;
@@ -70,7 +70,7 @@ Json suite_json(const NewSuiteArguments& a, const std::vector<Scenario>& scenari
   }
   Json methods{truth, no_abstraction};
   if (answered) methods.insert(methods.begin(), "lga");
-  return {{"id", a.own.name},
+  return {{"id", a.scenario.name},
           {"about",
            {{"title", a.title},
             {"question", a.question},
@@ -103,26 +103,26 @@ Json claims_json() {
 }
 
 void new_suite(NewSuiteArguments a) {
-  expect_plain_name("new-suite", a.own.name);
-  expect_free_suite("new-suite", a.own.name);
-  const fs::path directory = a.directory.empty() ? fs::path(a.own.name) : a.directory;
-  const std::string name = a.own.name, file = name + ".json";
+  expect_plain_name("new-suite", a.scenario.name);
+  expect_free_suite("new-suite", a.scenario.name);
+  const fs::path directory = a.directory.empty() ? fs::path(a.scenario.name) : a.directory;
+  const std::string name = a.scenario.name, file = name + ".json";
   if (std::error_code error; fs::exists(directory, error))
     throw InputError(fmt::format("{}: exists already; nothing was written", directory.string()));
   expect_scenario_path(directory);
   std::vector<Scenario> scenarios;
   std::map<fs::path, Json> files;
   for (const std::string& id : a.scenarios) scenarios.push_back(load_scenario(id));
-  if (scenarios.empty() || !a.own.commands.empty()) {
-    a.own.name += "_1";
-    expect_free_scenario("new-suite", a.own.name);
-    const std::string own = a.own.name + ".json";
+  if (scenarios.empty() || !a.scenario.commands.empty()) {
+    a.scenario.name += "_1";
+    expect_free_scenario("new-suite", a.scenario.name);
+    const std::string scenario_file = a.scenario.name + ".json";
     // As in the shipped suites: with fewer any object is right too often. Only these scenes have room for them.
-    if (a.own.task == "pick_and_place" && a.own.distractors == NewScenario().distractors)
-      a.own.near_miss_distractors = "4:4";
-    const Json json = files[own] = new_scenario_json(a.own, "new-suite", own);
-    scenarios.push_back(read_scenario(json, own));
-    a.own.name = name;
+    if (a.scenario.task == "pick_and_place" && a.scenario.distractors == NewScenario().distractors)
+      a.scenario.near_miss_distractors = "4:4";
+    const Json json = files[scenario_file] = new_scenario_json(a.scenario, "new-suite", scenario_file);
+    scenarios.push_back(read_scenario(json, scenario_file));
+    a.scenario.name = name;
   }
   for (const Scenario& one : scenarios)
     if (one.environment != scenarios.front().environment)
@@ -155,13 +155,13 @@ void new_suite(NewSuiteArguments a) {
 void add_new_suite(CLI::App& app, int& exit) {
   auto a = std::make_shared<NewSuiteArguments>();
   Verb verb(app, "new-suite", "Write a suite of your own: scenarios, a question, a preset smoke, a claim");
-  verb.option("name NAME", a->own.name, "The suite's id; its own scenario is NAME_1", required);
+  verb.option("name NAME", a->scenario.name, "The suite's id; its own scenario is NAME_1", required);
   verb.option("--directory DIR", a->directory, "The suite's directory (default: ./NAME); it must not exist yet");
   verb.option("--title TEXT", a->title, "The suite's title on pages (default: NAME)");
   verb.option("--question TEXT", a->question, "The question that the suite asks");
   verb.option("--scenarios SCENARIO,...", a->scenarios,
               "Existing scenarios; without them, or with --command, new-suite writes one of the suite's own");
-  add_scenario_options(verb, a->own);
+  add_scenario_options(verb, a->scenario);
   verb->footer(
       "new-suite writes the suite's own scenario as `new-scenario` does. The rows are the truth; GCBC-SEG, which sees "
       "all; and LGA, if answers are recorded for all scenarios. Without --distractors, a scene of near misses has four "

@@ -26,13 +26,13 @@ class PlayedScenes {
     Scenario scenario;
   };
 
-  /// Of a cell.json, which lives as long as this. @throws InputError
+  /// The cell of a cell.json; it lives as long as this. @throws InputError
   const Played& cell(const std::string& file);
 
   /// @throws InputError where this version samples another scene than that hash's.
   static Scene scene(const Played& played, const std::string& arm, int index, const std::string& hash);
 
-  /// Null for an engine that is not there.
+  /// The scenario's environment on that engine; null for an engine that is not there.
   Environment* on(const std::string& engine, const Scenario& scenario);
 
  private:

@@ -41,8 +41,8 @@ void add_methods_in_python(Verb& verb, RecomputeArguments& a);
 /// @throws InputError where no run is, and for one of a version that computes other cells; says to `verb` it with that.
 RunRecord record_to_recompute(const fs::path& run, const std::string& verb);
 
-/// For recompute(): the cells with the run's answers; no server is asked. @throws InputError where these are not kept
-/// with the run.
+/// The plan for recompute(): the cells with the run's answers. No server is asked. @throws InputError where these are
+/// not kept with the run.
 RunPlan plan_again(const fs::path& run, const RunRecord& record, std::vector<Cell> cells, int jobs, double timeout_s);
 
 }  // namespace lgabench::cli

@@ -153,7 +153,10 @@ void print_judge(const RescoreArguments& a) {
 
 void print_rows(const std::vector<ByRow>& rows) {
   std::size_t row = 3, arm = 3;
-  for (const ByRow& one : rows) row = std::max(row, one.row.size()), arm = std::max(arm, one.arm.size());
+  for (const ByRow& one : rows) {
+    row = std::max(row, one.row.size());
+    arm = std::max(arm, one.arm.size());
+  }
   to_stdout("{:<{}}  {:<{}}  demos  episodes  recorded  rescored  distance\n", "row", row, "arm", arm);
   for (const auto& [name, of_arm, demonstrations, mean] : rows) {
     const double count = std::max(1, mean.episodes);

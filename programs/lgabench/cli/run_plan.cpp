@@ -114,13 +114,13 @@ std::string by_option(const std::string& complaint) {
 
 // A layout that nobody has: the suite's own are offered, not those of all environments.
 void expect_layouts(const Suite& suite, const Words& layouts) {
-  std::set<std::string> there;
+  std::set<std::string> offered;
   for (const std::string& id : suite.design.scenarios)
-    for (const std::string& layout : layouts_of(load_scenario(id))) there.insert(layout);
+    for (const std::string& layout : layouts_of(load_scenario(id))) offered.insert(layout);
   const Words all = installed_layouts();
   for (const std::string& layout : layouts)
     if (!contains(all, layout))
-      throw InputError("--layout: " + none_named("layout", layout, {there.begin(), there.end()}));
+      throw InputError("--layout: " + none_named("layout", layout, {offered.begin(), offered.end()}));
 }
 
 // A preset with a scene seed of its own is one of the board's.
@@ -205,13 +205,13 @@ std::optional<LiveModel> live_model(const RunArguments& a, AnswerSource& answers
 
 // Where --resume goes on: where the run would be, or was with another build. It begins none.
 fs::path run_to_resume(const RunPlan& plan, const std::string& suffix) {
-  const fs::path there = is_run(plan.out) ? plan.out : earlier_run(plan.out, suffix, plan.request);
-  if (there.empty())
+  const fs::path previous_run = is_run(plan.out) ? plan.out : earlier_run(plan.out, suffix, plan.request);
+  if (previous_run.empty())
     throw InputError(
         fmt::format("--resume: no run of this command is in {}; without --resume a new run of {} cells begins",
                     plan.out.parent_path().string(), plan.cells.size()));
-  to_stderr("resuming the run in {}\n", there.string());
-  return there;
+  to_stderr("resuming the run in {}\n", previous_run.string());
+  return previous_run;
 }
 
 }  // namespace

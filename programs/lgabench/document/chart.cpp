@@ -240,7 +240,10 @@ class Drawing {
     double x = left, y = chart_.height + 10;
     const auto entry = [&](const Series& series, const std::string& name) {
       const double wide = sample + 6 + spare_width * text_width(name, small_text);
-      if (x > left && x + wide > chart_.width - 4) x = left, y += row;
+      if (x > left && x + wide > chart_.width - 4) {
+        x = left;
+        y += row;
+      }
       canvas_.open_entry(series);
       canvas_.open(series);
       if (series.joined || series.kind == Series::reference)

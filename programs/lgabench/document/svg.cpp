@@ -21,10 +21,11 @@ std::string number(double value) { return fmt::format("{:.1f}", value == 0 || st
 class Svg : public Canvas {
  public:
   void open(const Series& series) override {
-    const std::string& own = series.style.colour;
+    const std::string& line_colour = series.style.colour;
     text_ += "<g class=\"series\"" + named(series);
     if (!series.style.reference())
-      text_ += fmt::format(" color=\"{0}\" style=\"--c:{1}\"", own, own == "#000000" ? "var(--ink,#000000)" : own);
+      text_ += fmt::format(" color=\"{0}\" style=\"--c:{1}\"", line_colour,
+                           line_colour == "#000000" ? "var(--ink,#000000)" : line_colour);
     text_ += '>';
   }
   void open_entry(const Series& series) override { text_ += fmt::format("<g class=\"entry\"{}>", named(series)); }

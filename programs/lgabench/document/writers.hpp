@@ -8,9 +8,9 @@
 
 namespace lgabench::document {
 
-/// For a terminal, in columns, without colour; logs are named with the run's directory before them.
+/// A document for a terminal, in columns, without colour; logs are named with the run's directory before them.
 std::string terminal(const Document& document, const fs::path& run);
-/// What of a section belongs in a terminal; and a table, as terminal() sets it.
+/// What of a section belongs in a terminal; and a table as it stands there.
 std::string terminal(const Section& section);
 std::string terminal(const Grid& grid);
 
@@ -22,7 +22,7 @@ std::string markdown(const Section& section);
 /// A table for a paper: a tabular with the rules of the package booktabs. Pure ASCII; a character that LaTeX has no
 /// command for here becomes "?".
 std::string latex(const Grid& grid);
-/// The same as CSV. A text that begins like a formula (=, +, -, @) gets an apostrophe in front.
+/// A table as CSV. A text that begins like a formula (=, +, -, @) gets an apostrophe in front.
 std::string csv(const Grid& grid);
 /// A line of a CSV file; and a JSON value as text for it: "" for null, a list's elements with spaces between.
 std::string csv_line(const std::vector<std::string>& values);

@@ -29,9 +29,9 @@ std::map<std::pair<int, std::string>, Clock::time_point> connections(int port) {
   std::error_code gone;
   for (const auto& entry : fs::directory_iterator("/proc/self/fd", gone)) {
     const int fd = std::stoi(entry.path().filename().string());
-    sockaddr_storage own{}, peer{};
-    socklen_t own_size = sizeof own, peer_size = sizeof peer;
-    if (::getsockname(fd, reinterpret_cast<sockaddr*>(&own), &own_size) == 0 && port_of(own) == port &&
+    sockaddr_storage local{}, peer{};
+    socklen_t local_size = sizeof local, peer_size = sizeof peer;
+    if (::getsockname(fd, reinterpret_cast<sockaddr*>(&local), &local_size) == 0 && port_of(local) == port &&
         ::getpeername(fd, reinterpret_cast<sockaddr*>(&peer), &peer_size) == 0)
       all.try_emplace({fd, std::string(reinterpret_cast<const char*>(&peer), peer_size)}, Clock::now());
   }

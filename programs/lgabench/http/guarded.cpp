@@ -98,9 +98,9 @@ void give_stack_back() {
 
 // Answers are whole and as they are: httplib would build one of thousands of ranges in memory, and compress each anew.
 void answer_whole(const Request& request) {
-  auto& own = const_cast<Request&>(request);  // httplib's, which it reads after this
-  own.ranges.clear();
-  own.headers.erase("Accept-Encoding");
+  auto& changed = const_cast<Request&>(request);  // httplib's, which it reads after this
+  changed.ranges.clear();
+  changed.headers.erase("Accept-Encoding");
   give_stack_back();
 }
 
@@ -133,9 +133,9 @@ GuardedServer::GuardedServer(const Listening& where, httplib::Headers headers, T
     throw InputError(fmt::format("{}:{}: cannot listen there: {}{}", where.address, where.port,
                                  errno == 0 ? "no address of this machine" : std::strerror(errno),
                                  where.port == 0 ? "" : "; take another --port"));
-  for (const char* own : {"127.0.0.1", "localhost", "[::1]"}) {
-    hosts_.push_back(fmt::format("{}:{}", own, port_));
-    if (port_ == 80) hosts_.emplace_back(own);  // a browser leaves HTTP's own port out
+  for (const char* host : {"127.0.0.1", "localhost", "[::1]"}) {
+    hosts_.push_back(fmt::format("{}:{}", host, port_));
+    if (port_ == 80) hosts_.emplace_back(host);  // a browser leaves HTTP's own port out
   }
   if (!where.host.empty()) hosts_.push_back(where.host);
 }

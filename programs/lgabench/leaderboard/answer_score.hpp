@@ -4,7 +4,7 @@
 
 namespace lgabench::leaderboard {
 
-/// Of the shipped lga, acting or selecting alone, which says of each command what it was answered: how exactly this
+/// The score of a row of the shipped lga, acting or selecting alone: how exactly what it was answered to each command
 /// keeps what is meant, in as many scenes of each arm as the table has episodes, by the suite's groups; what was wrong,
 /// by scenario; all models and the price. `file`: the cassette or the file of answers, where they are not shipped. Null
 /// for any other row. @throws InputError for a file whose bytes are not what its name says; MethodError too, where an
@@ -12,7 +12,7 @@ namespace lgabench::leaderboard {
 Json score_of_answers(const Installed& installed, const Competitor& row, const AnswerSource& answers,
                       const fs::path& file);
 
-/// Such a score, as an entry has it. @throws InputError with the place
+/// Expects a score as an entry has it. @throws InputError with the place
 void expect_score(const JsonReader& score, const Setting& setting);
 
 /// Who answered, for a reader.

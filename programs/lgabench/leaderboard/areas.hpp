@@ -26,7 +26,7 @@ ArmWeights weights_of(const Setting::Scenario& scenario);
 /// The share of its control's success that an entry keeps along one axis, over the scenarios that have it; none if the
 /// control had no success.
 std::optional<double> relative_area(const Entry& entry, const std::string& axis);
-/// Its success in the control, over all scenarios.
+/// The entry's success in the control, over all scenarios.
 double control_success(const Entry& entry);
 
 }  // namespace lgabench::leaderboard

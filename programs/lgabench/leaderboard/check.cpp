@@ -136,7 +136,7 @@ std::string substance(const fs::path& file, const std::string& bytes) {
 void expect_current(const fs::path& board, const std::vector<Entry>& entries, const CheckOptions& options,
                     Checked& checked) {
   try {
-    for (const auto& [file, bytes] : made_files(board, entries, options.documents, options.told))
+    for (const auto& [file, bytes] : made_files(board, entries, options.documents, options.on_progress))
       if (!fs::exists(file) || substance(file, read_file(file)) != substance(file, bytes))
         checked.problems.push_back(
             fmt::format("{}: not what lgabench leaderboard build makes of the entries", file.string()));
@@ -255,7 +255,7 @@ Checked check(const fs::path& board, const CheckOptions& options) {
       } catch (const InputError& e) {
         checked.problems.emplace_back(e.what());
       }
-      if (options.told) options.told("read", checked.entries, directories.size(), "entries");
+      if (options.on_progress) options.on_progress("read", checked.entries, directories.size(), "entries");
     }
     expect_vouched(entries, vouched, checked);
     if (entries.size() == checked.entries) expect_inferred(entries, vouched, checked);

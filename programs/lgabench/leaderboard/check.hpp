@@ -32,7 +32,7 @@ struct CheckOptions {
   bool maintainer = false;  // who asks may change maintainers_files
   std::vector<fs::path> documents;
   std::optional<Catalogue> installed{};  // what entries that are not yet replayed must fit; none: it is not asked
-  Told told{};
+  OnProgress on_progress{};
 };
 
 /// Schema, identity and completeness of every entry; that entries of one table played the same scenes; that cassettes

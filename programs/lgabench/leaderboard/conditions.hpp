@@ -29,13 +29,13 @@ struct Conditions {
   /// Why the row has no rank in a table of that track; "" where it has one.
   std::string why_not_ranked(const Track& track) const;
 
-  /// By columns of leaderboard.csv, which are also members of cell.json.
+  /// The conditions by columns of leaderboard.csv, which are also members of cell.json.
   std::vector<std::pair<std::string, std::string>> values() const;
   /// Options of the row's `run`; none where they are the suite's, and its preset ranks no others.
   std::vector<std::string> arguments(const Track& track) const;
   /// What distinguishes the row's name: "+names=read".
   std::string suffix() const { return reading.suffix(); }
-  /// Likewise in parts, "names=read", for which labels.json has words.
+  /// What distinguishes the row's name, in parts, "names=read", for which labels.json has words.
   std::vector<std::string> parts() const;
 };
 

@@ -133,12 +133,12 @@ std::string Entry::rest_hash() const {
 }
 
 Processor Entry::processor() const {
-  Processor own = read_processor(JsonReader(evidence.front().at("machine"), "entry.json", "/evidence/0/machine"));
-  if (own.instructions.empty() && !inferred_instructions.empty()) {
-    own.instructions = inferred_instructions;
-    own.inferred = true;
+  Processor first = read_processor(JsonReader(evidence.front().at("machine"), "entry.json", "/evidence/0/machine"));
+  if (first.instructions.empty() && !inferred_instructions.empty()) {
+    first.instructions = inferred_instructions;
+    first.inferred = true;
   }
-  return own;
+  return first;
 }
 
 bool Entry::has_answers_as_submitted() const {
@@ -214,13 +214,13 @@ fs::path superseded_place(const std::string& id, const std::string& hash) {
   return fs::path(superseded_directory) / id / hash.substr(0, 16);
 }
 
-std::vector<Entry> read_entries(const fs::path& board, const Told& told) {
+std::vector<Entry> read_entries(const fs::path& board, const OnProgress& on_progress) {
   std::vector<Entry> all;
   const Vouched vouched = read_vouched(board);
   const std::vector<fs::path> directories = entry_directories(board);
   for (const fs::path& directory : directories) {
     all.push_back(read_entry(board, directory, &vouched));
-    if (told) told("read", all.size(), directories.size(), "entries");
+    if (on_progress) on_progress("read", all.size(), directories.size(), "entries");
   }
   return all;
 }

@@ -60,8 +60,8 @@ Json to_json(const PlayedCell& cell);
 /// How many cells a replay plays, unless the entry has fewer: 30 find 10 % falsified ones in 96 of 100 cases.
 constexpr std::size_t enough_cells = 30;
 
-/// Told how many of so many steps are done, in words: "read 3 of 352 entries".
-using Told = std::function<void(const char* what, std::size_t done, std::size_t of, const char* things)>;
+/// Called with how many of so many steps are done, in words: "read 3 of 352 entries".
+using OnProgress = std::function<void(const char* what, std::size_t done, std::size_t of, const char* things)>;
 /// Whether a text may say why an entry took another's place: 1 to longest_reason bytes in one line.
 bool is_reason(const std::string& text);
 constexpr std::size_t longest_reason = 500;
@@ -98,7 +98,7 @@ struct Entry {
   /// SHA-256 of what it says beside its cells: entry.json in its long form, with its first evidence alone and without
   /// /withdrawn, as canonical JSON. Nothing of that changes.
   std::string rest_hash() const;
-  /// Of the machine that computed it first.
+  /// The processor of the machine that computed it first.
   Processor processor() const;
   /// Whether the maintainers vouch for the line.
   bool counts(const Json& line) const { return !vouched.empty() && vouched.count(line_hash(line)) > 0; }
@@ -124,17 +124,17 @@ Tier tier_of(const Entry& entry, const Json& line);
 /// count; without it none does. @throws InputError with the file and the first place that is not as docs/formats says,
 /// and, with `vouched`, for more than most_claims lines that nobody vouches for.
 Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched* vouched = nullptr);
-/// Of an entry's verifications: anybody may append some, and each is checked.
+/// So many of an entry's verifications may be vouched for by nobody: anybody may append some, and each is checked.
 constexpr std::size_t most_claims = 100;
 /// What an entry that another one took the place of says, where superseded_place() says.
 Entry read_superseded(const fs::path& board, const fs::path& directory);
 /// Directories of all entries, sorted, relative to the board. @throws InputError for what is neither file nor
 /// directory.
 std::vector<fs::path> entry_directories(const fs::path& board);
-/// Likewise of what entries took the place of: superseded/ID/HASH.
+/// Directories of what entries took the place of, superseded/ID/HASH. @throws as entry_directories().
 std::vector<fs::path> superseded_directories(const fs::path& board);
 /// All entries, with what the board's vouched.json says. @throws InputError as read_entry().
-std::vector<Entry> read_entries(const fs::path& board, const Told& told = {});
+std::vector<Entry> read_entries(const fs::path& board, const OnProgress& on_progress = {});
 
 /// What lies in answers/ and no entry names, or is a link, relative to the board: nobody would ever read it.
 std::vector<fs::path> other_answers(const fs::path& board, const std::vector<Entry>& entries);

@@ -210,10 +210,10 @@ void add_vouched(const Vouched& vouched, Entry& entry) {
   if (const auto inferred = vouched.instructions.find(entry.id()); inferred != vouched.instructions.end())
     entry.inferred_instructions = inferred->second;
   const std::string hash = entry.hash();
-  const auto own = vouched.lines.find(hash);
+  const auto found = vouched.lines.find(hash);
   const auto rest = vouched.entries.find(hash);
-  if (own != vouched.lines.end() && rest != vouched.entries.end() && rest->second == entry.rest_hash())
-    entry.vouched = own->second;
+  if (found != vouched.lines.end() && rest != vouched.entries.end() && rest->second == entry.rest_hash())
+    entry.vouched = found->second;
 }
 
 // verifications.jsonl; `most`: of lines that no maintainer vouches for.

@@ -22,7 +22,7 @@ struct Labels {
   std::vector<RowLabel> rows;
 };
 
-/// Those of the board; none where it has no such file. @throws InputError for a file that is not as docs/formats says.
+/// The board's labels; none where it has no such file. @throws InputError for a file that is not as docs/formats says.
 Labels read_labels(const fs::path& board);
 
 /// What the entry is called, of whose options those in `telling` tell it from other rows of the table: the words of

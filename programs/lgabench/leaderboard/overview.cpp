@@ -121,8 +121,8 @@ std::optional<Grid> overview_grid(const Suites& suites, Ranking ranking) {
     const bool in_few = 2 * numbers.scores.size() < columns;
     Grid::Row line{{}, {Span(label), Span(policy), Span(answers)}, numbers.reference, in_few};
     for (std::size_t k = 0; k < columns; ++k) {
-      const auto own = numbers.cells.find(k);
-      line.cells.push_back(own == numbers.cells.end() ? TableCell(Span::number("–")) : own->second);
+      const auto found = numbers.cells.find(k);
+      line.cells.push_back(found == numbers.cells.end() ? TableCell(Span::number("–")) : found->second);
     }
     line.cells.emplace_back(Span::number(numbers.scores.size() == columns ? fixed(numbers.mean()) : "–"));
     grid.rows.push_back(std::move(line));

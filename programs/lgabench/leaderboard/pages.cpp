@@ -174,7 +174,7 @@ bool ranks_entries(const NamedTable& table) {
 
 // In the order of tracks.json, then by name; suites for diagnosis, without a rank, come last.
 Suites suites_of(const std::vector<Entry>& entries, const Labels& labels, const Tracks& tracks,
-                 const std::vector<std::string>& order, const Told& told) {
+                 const std::vector<std::string>& order, const OnProgress& on_progress) {
   std::map<std::pair<std::ptrdiff_t, std::string>, std::vector<NamedTable>> by_place;
   const auto all = tables(entries);
   std::size_t done = 0;
@@ -182,7 +182,7 @@ Suites suites_of(const std::vector<Entry>& entries, const Labels& labels, const 
     const std::string& suite = table.front()->setting.suite;
     for (NamedTable& ranking : named_tables(table, labels, tracks))
       by_place[{std::find(order.begin(), order.end(), suite) - order.begin(), suite}].push_back(std::move(ranking));
-    if (told) told("computed", ++done, all.size(), "tables");
+    if (on_progress) on_progress("computed", ++done, all.size(), "tables");
   }
   Suites suites;
   for (auto& [place, named] : by_place) {
@@ -199,14 +199,14 @@ Suites suites_of(const std::vector<Entry>& entries, const Labels& labels, const 
 }  // namespace
 
 std::map<fs::path, std::string> made_files(const fs::path& board, const std::vector<Entry>& entries,
-                                           const std::vector<fs::path>& documents, const Told& told) {
+                                           const std::vector<fs::path>& documents, const OnProgress& on_progress) {
   const Tracks tracks = read_tracks(board);
   for (const Entry& entry : entries) expect_arms(board, tracks, entry.setting);
   const BoardScenes scenes = read_scenes(board, entries);
   const Labels labels = read_labels(board);
   std::map<fs::path, Marked> marked;
   for (const fs::path& document : documents_in(documents)) marked[document] = read_marked(document);
-  const Suites suites = suites_of(entries, labels, tracks, read_order(board), told);
+  const Suites suites = suites_of(entries, labels, tracks, read_order(board), on_progress);
   std::map<fs::path, std::string> files;
   files[board / "README.md"] = markdown(readme(suites));
   files[board / "index.html"] = html(overview(suites), overview_data(suites), "leaderboard.js");
@@ -219,11 +219,12 @@ std::map<fs::path, std::string> made_files(const fs::path& board, const std::vec
   return files;
 }
 
-std::vector<fs::path> build(const fs::path& board, const std::vector<fs::path>& documents, const Told& told) {
+std::vector<fs::path> build(const fs::path& board, const std::vector<fs::path>& documents,
+                            const OnProgress& on_progress) {
   const BoardWriter writer(board);
   expect_entries_of_scenes(board);
-  const std::vector<Entry> entries = read_entries(board, told);
-  std::map<fs::path, std::string> files = made_files(board, entries, documents, told);
+  const std::vector<Entry> entries = read_entries(board, on_progress);
+  std::map<fs::path, std::string> files = made_files(board, entries, documents, on_progress);
   for (const Entry& entry : entries) files[board / entry.place() / "entry.json"] = entry_text(entry);
   std::vector<fs::path> paths;
   for (const auto& [path, bytes] : files) {

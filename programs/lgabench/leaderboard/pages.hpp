@@ -15,11 +15,12 @@ namespace lgabench::leaderboard {
 /// @throws InputError for a document without such a pair, and for what else of the board is not as docs/formats says,
 /// before anything is computed.
 std::map<fs::path, std::string> made_files(const fs::path& board, const std::vector<Entry>& entries,
-                                           const std::vector<fs::path>& documents, const Told& told = {});
+                                           const std::vector<fs::path>& documents, const OnProgress& on_progress = {});
 
 /// Reads the entries and writes these files, and entries of 0.4 and earlier in the short form (said.hpp); pages of
 /// suites that are gone and answers that no entry names are removed, and what a killed writer left. Returns the paths
 /// of those that changed. @throws InputError as read_entry() and made_files()
-std::vector<fs::path> build(const fs::path& board, const std::vector<fs::path>& documents = {}, const Told& told = {});
+std::vector<fs::path> build(const fs::path& board, const std::vector<fs::path>& documents = {},
+                            const OnProgress& on_progress = {});
 
 }  // namespace lgabench::leaderboard

@@ -73,17 +73,17 @@ bool is_working_tree(const fs::path& directory) { return fs::exists(fs::symlink_
 
 // The board's place in the working tree that it is in.
 fs::path place_in_tree(const fs::path& board) {
-  const fs::path own = fs::absolute(board / "").lexically_normal().parent_path();
-  fs::path tree = own;
+  const fs::path directory = fs::absolute(board / "").lexically_normal().parent_path();
+  fs::path tree = directory;
   for (; !is_working_tree(tree); tree = tree.parent_path()) {
     if (fs::is_symlink(tree))
       throw InputError(fmt::format("{}: a symbolic link; a board is in a working tree of git", tree.string()));
     if (tree == tree.root_path())
-      throw InputError(fmt::format("{}: expected a board in a working tree of git", own.string()));
+      throw InputError(fmt::format("{}: expected a board in a working tree of git", directory.string()));
   }
-  if (tree == own)
-    throw InputError(fmt::format("{}: a repository of its own; a board is a directory of one", own.string()));
-  return own.lexically_relative(tree);
+  if (tree == directory)
+    throw InputError(fmt::format("{}: a repository of its own; a board is a directory of one", directory.string()));
+  return directory.lexically_relative(tree);
 }
 
 // What stands up to `end`, which is passed.

@@ -157,9 +157,9 @@ Json evidence_of(const RunResults& run, const Identity& identity, const Json& da
 
 // Whether a failure has a cause, which is found by telling the method the truth.
 bool is_attributed(const CellResult& result) {
-  const auto told = [](const Episode& e) { return !e.attribution.empty(); };
+  const auto has_cause = [](const Episode& e) { return !e.attribution.empty(); };
   return std::any_of(result.episodes.begin(), result.episodes.end(),
-                     [&](const auto& arm) { return std::any_of(arm.second.begin(), arm.second.end(), told); });
+                     [&](const auto& arm) { return std::any_of(arm.second.begin(), arm.second.end(), has_cause); });
 }
 
 // A record's plugin goes by id and version, since another build's bytes differ: beside the installation's plugin none

@@ -15,8 +15,9 @@ constexpr std::uintmax_t most_entry_bytes = 4 << 20, most_said_bytes = 8 << 20;
 /// to /said, once each. An entry without Selections stays as it is.
 Json shortened(Json entry);
 
-/// Its long form, which Entry and hashes have; an entry without /said is in that form already. @throws InputError for
-/// a number that stands for nothing, and where the long form would have more than most_said_bytes. `file`: its name
+/// The long form of entry.json, which Entry and hashes have; an entry without /said is in that form already. @throws
+/// InputError for a number that stands for nothing, and where the long form would have more than most_said_bytes.
+/// `file`: its name
 Json expanded(Json entry, const std::string& file);
 
 /// The file's text, of either form: /said last, each value in a line of its own.

@@ -53,10 +53,10 @@ std::optional<EntryScene> chosen_arm(const Entry& entry, const std::string& whic
 }
 
 EntryScenes chosen_scenes(const Entry& entry) {
-  EntryScenes own;
+  EntryScenes of_entry;
   for (const char* which : {"best", "worst"})
-    if (const auto chosen = chosen_arm(entry, which)) own[which] = *chosen;
-  return own;
+    if (const auto chosen = chosen_arm(entry, which)) of_entry[which] = *chosen;
+  return of_entry;
 }
 
 EntryScene read_scene(const JsonReader& reader, const std::string& which, const Entry& entry) {
@@ -85,8 +85,8 @@ Json read_scenes_file(const fs::path& board, const std::function<bool(const std:
 
 void write_scenes(const fs::path& board, const BoardScenes& scenes) {
   Json json = Json::object();
-  for (const auto& [entry, own] : scenes)
-    for (const auto& [which, scene] : own) json[entry][which] = json_of(scene);
+  for (const auto& [entry, of_entry] : scenes)
+    for (const auto& [which, scene] : of_entry) json[entry][which] = json_of(scene);
   write_file(board / scenes_file, json.dump(1) + "\n");
 }
 
@@ -153,8 +153,8 @@ std::vector<std::string> problems_of_scenes(const fs::path& board, const BoardSc
   std::vector<std::string> problems;
   std::set<fs::path> listed;
   std::uintmax_t bytes = 0;
-  for (const auto& [entry, own] : scenes)
-    for (const auto& [which, scene] : own) {
+  for (const auto& [entry, of_entry] : scenes)
+    for (const auto& [which, scene] : of_entry) {
       const fs::path picture = scene_picture(entry, which), file = board / picture;
       listed.insert(picture.filename());
       if (fs::symlink_status(file).type() != fs::file_type::regular) {
@@ -181,10 +181,11 @@ std::vector<std::string> problems_of_scenes(const fs::path& board, const BoardSc
 
 std::optional<std::vector<fs::path>> add_scenes(const fs::path& board, const Entry& entry, const Catalogue& catalogue,
                                                 const VerifyOptions& options, BoardScenes& scenes) {
-  EntryScenes own = chosen_scenes(entry);
+  EntryScenes of_entry = chosen_scenes(entry);
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < entry.cells.size(); ++i)
-    if (std::any_of(own.begin(), own.end(), [&](const auto& one) { return one.second.cell == entry.cells[i].key; }))
+    if (std::any_of(of_entry.begin(), of_entry.end(),
+                    [&](const auto& one) { return one.second.cell == entry.cells[i].key; }))
       places.push_back(i);
   const std::optional<Recomputed> again = played_again(board, entry, places, looked_at, catalogue, options);
   if (!again) return std::nullopt;
@@ -198,7 +199,7 @@ std::optional<std::vector<fs::path>> add_scenes(const fs::path& board, const Ent
   }
   const Scratch scratch("scenes");
   Json requests = Json::array();
-  for (auto& [which, scene] : own) {
+  for (auto& [which, scene] : of_entry) {
     const statistics::CellResult& result = results.at(scene.cell);
     const std::string letters = first_of(cell_of(entry, scene.cell).outcomes.at(scene.arm));
     const Episode* const episode = same_end(which, letters, result.episodes.at(scene.arm));
@@ -222,7 +223,7 @@ std::optional<std::vector<fs::path>> add_scenes(const fs::path& board, const Ent
       throw InputError(line.is_object() ? line.at("problem").get<std::string>() : answers.problem);
   std::vector<fs::path> paths;
   const BoardWriter writer(board);
-  for (auto& [which, scene] : own) {
+  for (auto& [which, scene] : of_entry) {
     const std::string png = read_file(scratch.path / which);
     const fs::path picture = scene_picture(entry.id(), which);
     if (png.size() > most_picture_bytes)
@@ -232,7 +233,7 @@ std::optional<std::vector<fs::path>> add_scenes(const fs::path& board, const Ent
     write_file(board / picture, png);
     paths.push_back(picture);
   }
-  scenes[entry.id()] = std::move(own);
+  scenes[entry.id()] = std::move(of_entry);
   write_scenes(board, scenes);
   return paths;
 }

@@ -19,7 +19,7 @@ struct EntryScene {
   int index = 0;
   std::string command{}, sha256{};
 };
-/// Of an entry by id: "best", an episode that succeeded, and "worst", one that failed.
+/// An entry's scenes: "best", an episode that succeeded, and "worst", one that failed.
 using EntryScenes = std::map<std::string, EntryScene>;
 using BoardScenes = std::map<std::string, EntryScenes>;
 

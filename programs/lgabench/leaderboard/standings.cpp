@@ -38,11 +38,11 @@ Rates rates_of(const Entry& entry, const std::string& only_arm, int only_demonst
     std::vector<double> scenes(static_cast<std::size_t>(setting.episodes));
     const ArmWeights& weights = by_scenario.at(cell.place.scenario);
     for (const auto& [arm, letters] : cell.outcomes) {
-      const auto own = weights.find(arm);
-      const double weight = !only_arm.empty()      ? arm == only_arm
-                            : own != weights.end() ? own->second
-                            : weights.empty()      ? 1 / static_cast<double>(cell.outcomes.size())
-                                                   : 0;
+      const auto found = weights.find(arm);
+      const double weight = !only_arm.empty()        ? arm == only_arm
+                            : found != weights.end() ? found->second
+                            : weights.empty()        ? 1 / static_cast<double>(cell.outcomes.size())
+                                                     : 0;
       for (std::size_t i = 0; i < scenes.size(); ++i) scenes[i] += weight * is_success(letters[i]);
     }
     by_unit[{cell.place.scenario, cell.place.layout}][cell.place.seed].push_back(std::move(scenes));
@@ -55,8 +55,8 @@ Rates rates_of(const Entry& entry, const std::string& only_arm, int only_demonst
       const auto& by_seed = played->second;
       auto& unit = rates.emplace_back();
       for (const std::uint64_t seed : setting.seeds) {
-        const auto own = by_seed.find(seed);  // one that learns nothing plays shared scenes once, for all seeds
-        const auto& cells = own == by_seed.end() ? by_seed.begin()->second : own->second;
+        const auto found = by_seed.find(seed);  // one that learns nothing plays shared scenes once, for all seeds
+        const auto& cells = found == by_seed.end() ? by_seed.begin()->second : found->second;
         std::vector<double>& scenes = unit.emplace_back(static_cast<std::size_t>(setting.episodes));
         for (const std::vector<double>& cell : cells)
           for (std::size_t i = 0; i < scenes.size(); ++i) scenes[i] += cell[i] / static_cast<double>(cells.size());
@@ -75,9 +75,9 @@ void add_rates(Standing& standing) {
   std::map<std::string, std::map<std::string, std::vector<double>>> in_arm;
   for (const PlayedCell& cell : entry.cells) {
     double rate = static_cast<double>(cell.successes()) / cell.episodes();
-    if (const ArmWeights& own = weights.at(cell.place.scenario); !own.empty()) {
+    if (const ArmWeights& arm_weights = weights.at(cell.place.scenario); !arm_weights.empty()) {
       rate = 0;
-      for (const auto& [arm, weight] : own)
+      for (const auto& [arm, weight] : arm_weights)
         rate += weight * successes(cell.outcomes.at(arm)) / static_cast<double>(cell.outcomes.at(arm).size());
     }
     standing.episodes += cell.episodes();

@@ -50,11 +50,11 @@ Json link_of(const document::Span& span) {
 // Its two episodes as pictures, the worst first; none where nobody has drawn them.
 Json scenes_of(const Entry& entry, const BoardScenes& scenes) {
   Json all = Json::array();
-  const auto own = scenes.find(entry.id());
-  if (own == scenes.end()) return all;
+  const auto found = scenes.find(entry.id());
+  if (found == scenes.end()) return all;
   for (const char* which : {"worst", "best"}) {
-    const auto scene = own->second.find(which);
-    if (scene == own->second.end()) continue;
+    const auto scene = found->second.find(which);
+    if (scene == found->second.end()) continue;
     const PlayedCell& cell = *std::find_if(entry.cells.begin(), entry.cells.end(),
                                            [&](const PlayedCell& one) { return one.key == scene->second.cell; });
     const char letter = cell.outcomes.at(scene->second.arm).at(static_cast<std::size_t>(scene->second.index));

@@ -319,12 +319,12 @@ std::string section_title(const NamedTable& table, const std::vector<NamedTable>
 
 std::string what_was_played(const Setting& setting) {
   const auto presets = statistics::about_suite(setting.suite).presets;
-  const auto own = presets.find(setting.preset);
+  const auto found = presets.find(setting.preset);
   return fmt::format(
       "{}{} scenarios, {} demonstrations, {} training seed{}, {} test scenes of each arm and {}; scene seed {}.",
-      own == presets.end() ? "" : own->second + " ", setting.scenarios.size(), fmt::join(setting.demonstrations, ", "),
-      setting.seeds.size(), setting.seeds.size() == 1 ? "" : "s", setting.episodes,
-      setting.test_scenes == TestScenes::per_seed ? "training seed" : "scenario", setting.scene_seed);
+      found == presets.end() ? "" : found->second + " ", setting.scenarios.size(),
+      fmt::join(setting.demonstrations, ", "), setting.seeds.size(), setting.seeds.size() == 1 ? "" : "s",
+      setting.episodes, setting.test_scenes == TestScenes::per_seed ? "training seed" : "scenario", setting.scene_seed);
 }
 
 document::Document suite_document(const std::string& suite, const std::vector<NamedTable>& tables) {

@@ -41,7 +41,7 @@ struct NamedTable {
     return static_cast<std::size_t>(&standing - standings.data());
   }
 };
-/// Those of a preset's entries: the first, and each other in which some entry has a rank.
+/// The tables of a preset's entries: the first, and each other in which some entry has a rank.
 std::vector<NamedTable> named_tables(const std::vector<const Entry*>& table, const Labels& labels,
                                      const Tracks& tracks);
 
@@ -52,20 +52,20 @@ void add_row(document::Grid& grid, const NamedStanding& standing);
 
 /// "Fewer demonstrations?, any policy"
 std::string title_of(const NamedTable& table);
-/// Of an entry: the day when it was computed first, and that of its last verification that counts; "" without one.
+/// The day when an entry was computed first, and that of its last verification that counts; "" without one.
 std::string computed_on(const Entry& entry);
 std::string replayed_on(const Entry& entry);
 /// Who submitted it.
 document::Span by_span(const Entry& entry);
-/// Its id, which leads to its entry.json.
+/// The entry's id, which leads to its entry.json.
 document::Span id_span(const Entry& entry);
-/// Its commit or file, which leads to the repository where that has an address.
+/// The entry's commit or file, which leads to the repository where that has an address.
 document::Span source_span(const Entry& entry);
 /// "heart, 13 scenarios, ..." in a sentence.
 std::string what_was_played(const Setting& setting);
 /// "3", "–" where there is none.
 std::string rank_text(const Standing& standing);
-/// Likewise; a page says why there is none.
+/// The rank as a table of a page has it; where there is none its title says why.
 document::Span rank_span(const Standing& standing);
 /// "0.516"; "[0.443, 0.582]"; both
 std::string score_text(double score);

@@ -9,7 +9,8 @@ namespace lgabench::leaderboard {
 /// The words of an id.
 std::string spaced(std::string id);
 
-/// From "about" of the installed suite; where that says nothing, or there is no such suite, the words of the id.
+/// Titles of a suite, its arms and scenarios, from "about" of the installed suite; where that says nothing, or there is
+/// no such suite, the words of the id.
 class Titles {
  public:
   explicit Titles(const std::string& suite);

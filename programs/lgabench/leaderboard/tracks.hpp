@@ -25,7 +25,7 @@ struct Track {
 /// By preset, as "clutter-abstraction".
 using Tracks = std::map<std::string, Track>;
 
-/// Those of the board's tracks.json; none where there is no such file. @throws InputError with file and place.
+/// The tracks of the board's tracks.json; none where there is no such file. @throws InputError with file and place.
 Tracks read_tracks(const std::filesystem::path& board);
 /// The suites that pages have first, in their order, by the same file. @throws as read_tracks().
 std::vector<std::string> read_order(const std::filesystem::path& board);

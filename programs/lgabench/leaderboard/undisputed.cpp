@@ -49,11 +49,11 @@ std::optional<Undisputed> undisputed_of(const Setting& setting) {
     if (std::none_of(commands.begin(), commands.end(), is_listed)) continue;  // sampling is what takes time
     for (const std::string& layout : setting.layouts)
       for (const std::uint64_t set : scene_sets(setting.test_scenes, setting.seeds)) {
-        const std::optional<std::uint64_t> own =
+        const std::optional<std::uint64_t> training_seed =
             setting.test_scenes == TestScenes::per_seed ? std::optional(set) : std::nullopt;
         std::vector<bool>& scenes = all.disputed[{played.id, layout, set}];
         for (int i = 0; i < setting.episodes; ++i) {
-          const Scene scene = test_scene(scenario, layout, arm, setting.scene_seed, i, own);
+          const Scene scene = test_scene(scenario, layout, arm, setting.scene_seed, i, training_seed);
           scenes.push_back(is_disputed(pairs, scenario, scene));
           Undisputed::Scenes& of_command = all.commands[scenario.command(scene.command).utterance];
           ++of_command.all;

@@ -24,15 +24,17 @@ struct Undisputed {
     int disputed = 0, all = 0;
   };
   MainColumn main;
-  /// By scenario, layout and set of scenes (scene_set()), a scene each; none where none is disputed.
+  /// Which scenes are disputed, by scenario, layout and set of scenes (scene_set()); none where none is disputed.
   std::map<std::tuple<std::string, std::string, std::uint64_t>, std::vector<bool>> disputed;
   std::map<std::string, Scenes> commands;  // by their words, those with some
 };
-/// None where no scene is disputed, and where the preset is not installed as it was: its scenes are sampled anew.
+/// The undisputed scenes of a table; none where no scene is disputed, and where the preset is not installed as it was:
+/// its scenes are sampled anew.
 /// @throws InputError for a file of disputed pairs that is not as docs/formats says.
 std::optional<Undisputed> undisputed_of(const Setting& setting);
 
-/// An entry's in the main column: the mean over the scenarios with undisputed scenes. None where it played none.
+/// An entry's success in the main column: the mean over the scenarios with undisputed scenes. None where it played
+/// none.
 std::optional<double> success(const Undisputed& undisputed, const Entry& entry);
 
 /// Which commands' scenes are left out, and how many of them.

@@ -142,9 +142,9 @@ Spans headline(const Material& material, const AboutSuite& about) {
     if (claim.verdict != Verdict::not_tested)
       verdicts.push_back(fmt::format("{} {}", claim.id, to_string(claim.verdict)));
   if (!verdicts.empty()) {
-    const bool own = !material.claims.front().refuted_if.empty();
+    const bool of_suite = !material.claims.front().refuted_if.empty();
     spans.emplace_back(" ");
-    spans.push_back(Span::link(own ? "The suite’s claims" : "The paper’s claims", "#claims"));
+    spans.push_back(Span::link(of_suite ? "The suite’s claims" : "The paper’s claims", "#claims"));
     spans.emplace_back(fmt::format(": {}.", fmt::join(verdicts, ", ")));
   }
   return spans;
@@ -225,8 +225,10 @@ struct Means {
     double sum = 0;
     int n = 0;
     for (const Column& column : columns())
-      if (const Row* row = table.find(column.arm, mean_scenario, id, column.demonstrations); row && row->success)
-        sum += *row->success, ++n;
+      if (const Row* row = table.find(column.arm, mean_scenario, id, column.demonstrations); row && row->success) {
+        sum += *row->success;
+        ++n;
+      }
     return n == 0 ? "–" : fixed(sum / n);
   }
 

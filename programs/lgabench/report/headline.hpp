@@ -31,7 +31,7 @@ struct Brief {
   std::vector<std::string> notes;  // its marks, what it leaves out, what the run lacks, errors of methods
 };
 
-/// Of the run's first table.
+/// The brief of the run's first table.
 Brief brief(const Material& material);
 
 }  // namespace lgabench::report

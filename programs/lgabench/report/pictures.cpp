@@ -143,7 +143,10 @@ void add_inputs(const fs::path& run, const RunResults& results, Pictures& pictur
       Pictures::Input input{{}, shown.texts, shown.unread};
       for (const auto& [caption, png] : shown.pictures) {
         const auto [at, is_new] = known.emplace(png, pictures.seen.size());
-        if (is_new) pictures.seen.push_back(png), bytes += png.size();
+        if (is_new) {
+          pictures.seen.push_back(png);
+          bytes += png.size();
+        }
         input.pictures.emplace_back(caption, at->second);
       }
       if (bytes > most_read_bytes) return;

@@ -15,7 +15,7 @@ namespace lgabench::report {
 using namespace document;
 using namespace statistics;
 
-/// Those of a run's rows.
+/// Styles of a run's rows.
 MethodStyles styles_of(const Summary& summary, const RunResults& run);
 
 /// What a report is made of; refers to its parts, which must outlive it.

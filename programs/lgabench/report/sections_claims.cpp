@@ -147,7 +147,7 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
   Grid verdicts, untested;
   verdicts.name = "claims";
   verdicts.caption = "Verdicts";
-  const bool own = !claims.front().refuted_if.empty();
+  const bool of_suite = !claims.front().refuted_if.empty();
   untested.name = "claims_not_tested";
   untested.caption = "Claims that this run does not test";
   untested.heads = {"claim", "statement", "layout", "engine", "why"};
@@ -162,7 +162,7 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
       verdicts.rows.emplace_back();
       put(verdicts, "claim", 'l', claim.id);
       put(verdicts, "statement", 'l', claim.statement);
-      if (own) put(verdicts, "refuted if", 'l', claim.refuted_if);
+      if (of_suite) put(verdicts, "refuted if", 'l', claim.refuted_if);
       put(verdicts, "layout", 'l', claim.layout);
       put(verdicts, "engine", 'l', claim.engine);
       put(verdicts, "these scenarios", 'l', verdict_cell(claim.verdict, claim.reason, claim.rehearsal));
@@ -170,7 +170,7 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
     }
     lines.items.push_back(
         {fmt::format("{}  {} (layout {}, engine {})", claim.id, claim.statement, claim.layout, claim.engine)});
-    if (own) lines.items.push_back({"      refuted if " + claim.refuted_if});
+    if (of_suite) lines.items.push_back({"      refuted if " + claim.refuted_if});
     lines.items.push_back({"      these scenarios: " + with_reason(claim.verdict, claim.reason, claim.rehearsal)});
     if (!claim.differences.empty())
       lines.items.push_back(
@@ -194,8 +194,8 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
                  "these”: would new scenarios (Student's t over the scenarios' differences; six are needed)? Each "
                  "difference is that of the mean over scenarios, "
                  "paired by training seed, participant and scene; brackets hold 95 % intervals, p is Holm's over " +
-                 std::string(own ? "all differences of the suite's claims on one layout and engine"
-                                 : "the rows compared in one arm at one number of demonstrations") +
+                 std::string(of_suite ? "all differences of the suite's claims on one layout and engine"
+                                      : "the rows compared in one arm at one number of demonstrations") +
                  ", for each of the two by itself."}});
   section.add(reading, details(styles, about, tested));
   Grid scenarios = by_scenario(styles, about, tested);

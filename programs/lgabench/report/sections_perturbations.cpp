@@ -106,7 +106,10 @@ TableCell inputs_cell(int unchanged, int of) {
 TableCell inputs_cell(const Curve& curve) {
   if (curve.kind == "reference") return {};
   UnchangedInputs all;
-  for (const Curve::Level& level : curve.levels) all.unchanged += level.inputs.unchanged, all.of += level.inputs.of;
+  for (const Curve::Level& level : curve.levels) {
+    all.unchanged += level.inputs.unchanged;
+    all.of += level.inputs.of;
+  }
   return inputs_cell(all.unchanged, all.of);
 }
 

@@ -29,7 +29,7 @@ Grid grid_of(const Material& material, const Table& table) {
       row.cells.resize(grid.heads.size());
       if (i > 0) {
         const statistics::Step& step = one.steps[i - 1];
-        const std::string own = fmt::format("{}steps/{}/", place, i - 1);
+        const std::string step_place = fmt::format("{}steps/{}/", place, i - 1);
         const auto interval = [](const Interval& of, const std::string& where) {
           return Spans{Span::number("["), Span::number(signed_rate(of.low), where + "low"), Span::number(", "),
                        Span::number(signed_rate(of.high), where + "high"), Span::number("]")};

@@ -81,15 +81,15 @@ Grid own_grid(const Material& material, const Table& table, const std::vector<Co
 // The same with the paper's values: beside several arms, pooled over its own, they have a column; else its curve a row.
 Grid success_grid(const Material& material, const Table& table, const std::vector<Column>& columns,
                   const std::vector<std::string>& scenarios) {
-  const Grid own = own_grid(material, table, columns, success_cell, scenarios, false);
-  Grid grid = own;
+  const Grid alone = own_grid(material, table, columns, success_cell, scenarios, false);
+  Grid grid = alone;
   grid.rows.clear();
   const bool arms = table.arms.size() > 1;
   bool pooled = false;
   std::size_t at = 0;  // in own.rows
   for (const std::string& scenario : scenarios) {
     for (const std::string& id : table.methods(scenario)) {
-      Grid::Row& row = grid.rows.emplace_back(own.rows[at++]);
+      Grid::Row& row = grid.rows.emplace_back(alone.rows[at++]);
       if (arms) {
         row.cells.push_back(paper_cell(material.paper, scenario, id, columns.front().demonstrations, 2));
         pooled = pooled || !row.cells.back().spans.empty();
@@ -105,7 +105,7 @@ Grid success_grid(const Material& material, const Table& table, const std::vecto
       }
       if (any) grid.rows.push_back(std::move(published));
     }
-    for (std::size_t i = table.references(scenario).size(); i > 0; --i) grid.rows.push_back(own.rows[at++]);
+    for (std::size_t i = table.references(scenario).size(); i > 0; --i) grid.rows.push_back(alone.rows[at++]);
   }
   if (pooled) {
     grid.heads.emplace_back(Span("the paper, its arms pooled", Emphasis::published));
@@ -245,9 +245,10 @@ void add_view(const Material& material, const Table& table, const statistics::Vi
     grid.heads.front() = view.corner;
     section.add_brief(std::move(grid));
   };
-  const auto own = [&](TableCell (*cell_of)(const Row*), const std::vector<Column>& shown,
-                       const std::vector<std::string>& scenarios,
-                       bool plain_names) { return own_grid(material, table, shown, cell_of, scenarios, plain_names); };
+  const auto grid_of = [&](TableCell (*cell_of)(const Row*), const std::vector<Column>& shown,
+                           const std::vector<std::string>& scenarios, bool plain_names) {
+    return own_grid(material, table, shown, cell_of, scenarios, plain_names);
+  };
   const std::vector<Column> plain = statistics::View::unperturbed(table, view.columns),
                             shifted = statistics::View::unperturbed(table, view.shifted);
   if (arms) section.add(reading, Heading{view.corner});
@@ -258,7 +259,7 @@ void add_view(const Material& material, const Table& table, const statistics::Vi
                              arms ? "arms of the test" : "number of demonstrations")}});
   add(success_grid(material, table, plain, {mean_scenario}), "mean",
       fmt::format("Success, {}, {}; {}", table.title(mean_scenario), table.title(), columns));
-  add_brief(own(success_cell, plain, all, true), ": success [95 % interval over test scenes and training seeds]");
+  add_brief(grid_of(success_cell, plain, all, true), ": success [95 % interval over test scenes and training seeds]");
   if (Charts small = scenario_charts(material, table, each); first && !small.charts.empty())
     section.add(reading, std::move(small));
   add(success_grid(material, table, view.columns, each), "scenarios",
@@ -266,14 +267,14 @@ void add_view(const Material& material, const Table& table, const statistics::Vi
       "Each scenario:");
   const std::string control = table.arm_title(table.arms.front());
   if (!view.shifted.empty()) {
-    add(without_empty_rows(own(shift_cell, view.shifted, all, false)), "change",
+    add(without_empty_rows(grid_of(shift_cell, view.shifted, all, false)), "change",
         fmt::format("Change against {}, scene by scene, {}; {}", control, table.title(), columns),
         "Change against " + control, fmt::format("Change against {}, scene by scene:", control));
     if (!shifted.empty())
-      add_brief(without_empty_rows(own(shift_cell, shifted, all, true)),
+      add_brief(without_empty_rows(grid_of(shift_cell, shifted, all, true)),
                 fmt::format(": change against {} [95 % interval]", control));
   }
-  if (const Grid otherwise = without_empty_rows(own(otherwise_cell, view.shifted, {mean_scenario}, true));
+  if (const Grid otherwise = without_empty_rows(grid_of(otherwise_cell, view.shifted, {mean_scenario}, true));
       !otherwise.rows.empty()) {
     const std::string what = fmt::format("commands for which something else was selected than in {}, share", control);
     add(otherwise, "otherwise", fmt::format("{}, {}; {}", capital(what), table.title(), columns),
@@ -286,10 +287,10 @@ void add_view(const Material& material, const Table& table, const statistics::Vi
     return;
   }
   const std::string seen = "test inputs that occurred in training, share";
-  add(without_empty_rows(own(seen_cell, view.columns, all, false)), "seen",
+  add(without_empty_rows(grid_of(seen_cell, view.columns, all, false)), "seen",
       fmt::format("{}, {}; {}", capital(seen), table.title(), columns), "Test inputs that occurred in training",
       capital(seen) + ":");
-  add_brief(without_empty_rows(own(seen_cell, plain, {mean_scenario}, true)), ": " + seen);
+  add_brief(without_empty_rows(grid_of(seen_cell, plain, {mean_scenario}, true)), ": " + seen);
 }
 
 }  // namespace

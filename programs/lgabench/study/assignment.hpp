@@ -7,7 +7,8 @@
 
 namespace lgabench::study {
 
-/// Of one person. A slot is a person's number in the order of consent, from 0; it is never given twice.
+/// What one person is asked, and in which order. A slot is a person's number in the order of consent, from 0; it is
+/// never given twice.
 struct Assignment {
   std::array<Condition, 2> conditions{};  // of the first period, of the second
   std::array<int, 2> sets{};              // asked in each period: 0, 0 with one set

@@ -14,7 +14,7 @@ namespace lgabench::study {
 /// Drawn from the seed. @throws InputError where a command is no scenario's.
 Json disputed_items(std::uint64_t seed);
 
-/// Of all pairs of a study.
+/// How many pairs a study has.
 struct PairCount {
   int disputed = 0, controls = 0;
 };

@@ -12,7 +12,7 @@ namespace lgabench::study {
 /// The paper's two ways to specify φ̂: from empty lists, or from a language model's proposal.
 enum class Condition { human, lga_hill };
 inline constexpr std::array conditions{Condition::human, Condition::lga_hill};
-/// Its place in `conditions`.
+/// The condition's place in `conditions`.
 inline std::size_t index(Condition condition) { return static_cast<std::size_t>(condition); }
 /// "human" or "lga_hill": the method whose rows use the answers.
 std::string to_string(Condition condition);

@@ -70,7 +70,8 @@ std::vector<ScaleResult> tlx_of(const StudyResults& results) {
     for (std::size_t i = 1; i < all.size(); ++i) {
       const Json &before = human.at(all[i].scale), &after = edited.at(all[i].scale);
       if (before.is_null() || after.is_null()) continue;
-      all[i].values[0].push_back(before), all[i].values[1].push_back(after);
+      all[i].values[0].push_back(before);
+      all[i].values[1].push_back(after);
       sums[0] += all[i].values[0].back();
       sums[1] += all[i].values[1].back();
       ++answered;
@@ -119,7 +120,10 @@ double mean_log(const PersonResult& person, int period) {
   int n = 0;
   for (const auto& trials : person.counted)
     for (const Trial* trial : trials)
-      if (trial->period == period) sum += std::log(trial->raw_s), ++n;
+      if (trial->period == period) {
+        sum += std::log(trial->raw_s);
+        ++n;
+      }
   return sum / n;
 }
 

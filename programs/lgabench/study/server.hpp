@@ -19,7 +19,8 @@ struct Site {
   PictureSheet object_types, textures,
       pairs;  // pairs: those that the protocol asks about, "TYPE, TEXTURE"; may be none
 };
-/// From the data directory's study/, and pictures drawn by lgabench-worker. @throws InputError where either is missing.
+/// The pages' files from the data directory's study/, and pictures drawn by lgabench-worker. @throws InputError where
+/// either is missing.
 Site load_site(const Protocol& protocol);
 
 struct Listening {

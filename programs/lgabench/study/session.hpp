@@ -110,7 +110,7 @@ class Session {
   Json answers_;
   std::array<Json, 2> tlx_;  // by condition
   std::set<std::string> keys_;
-  // Of the trial that is running.
+  // The trial that is running:
   double shown_ms_ = 0;
   std::int64_t shown_at_ = 0;
   Selection edited_;

@@ -86,15 +86,15 @@ TEST(Board, ReadingAndComputingAreToldOf) {
   const TemporaryDirectory board;
   for (const char* name : {"a", "b"}) write_replayed(board.path, made_entry(small_setting(), name, .5));
   std::vector<std::string> said;
-  const Told told = [&](const char* what, std::size_t done, std::size_t of, const char* things) {
+  const OnProgress on_progress = [&](const char* what, std::size_t done, std::size_t of, const char* things) {
     said.push_back(fmt::format("{} {} of {} {}", what, done, of, things));
   };
   const std::vector<std::string> expected{"read 1 of 2 entries", "read 2 of 2 entries", "computed 1 of 1 tables"};
-  build(board.path, {}, told);
+  build(board.path, {}, on_progress);
   EXPECT_EQ(said, expected);
   said.clear();
   CheckOptions options;
-  options.told = told;
+  options.on_progress = on_progress;
   EXPECT_EQ(all(check(board.path, options).problems), "");
   EXPECT_EQ(said, expected);
 }
