@@ -62,13 +62,13 @@ class LgaThenTaken : public CloningMethod {
     std::map<std::string, TakenFeatures> by_command;
     std::vector<Demonstration> shown = demonstrations;
     for (Demonstration& one : shown) {
-      TakenFeatures own;
-      own.add(one, services.actions);
+      TakenFeatures one_taken;
+      one_taken.add(one, services.actions);
       by_command[one.instruction.utterance].add(one, services.actions);
       Selection& selection = one.instruction.selection;
-      if (!own.taken.none()) selection.target.sets = sets_of(own.taken);
-      if (selection.second && !own.received.none())
-        static_cast<FeatureSet&>(*selection.second) = with(own.received, {}, space_);
+      if (!one_taken.taken.none()) selection.target.sets = sets_of(one_taken.taken);
+      if (selection.second && !one_taken.received.none())
+        static_cast<FeatureSet&>(*selection.second) = with(one_taken.received, {}, space_);
     }
     return std::make_unique<ChoosesWithin>(CloningMethod::learn(shown, services), std::move(by_command), space_);
   }

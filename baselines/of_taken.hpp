@@ -37,8 +37,8 @@ class ActsOnTheLikest : public Policy {
     const auto revised = revised_.find(instruction.utterance);
     if (revised == revised_.end() || revised->second != distribution_json(instruction.selection))
       return policy_->act(observation, instruction);
-    const auto own = by_command_.find(instruction.utterance);
-    const TakenFeatures& features = own == by_command_.end() ? all_ : own->second;
+    const auto found = by_command_.find(instruction.utterance);
+    const TakenFeatures& features = found == by_command_.end() ? all_ : found->second;
     Instruction likest_of_all = instruction;
     const TakenLooks target = likest_beside({}, observation, features.taken);
     Meaning& meaning = likest_of_all.selection.target = Meaning();
@@ -96,10 +96,10 @@ class OfTaken : public CloningMethod {
     std::map<std::string, TakenFeatures> by_command;
     std::vector<Demonstration> shown = demonstrations;
     for (Demonstration& one : shown) {
-      TakenFeatures own;
-      own.add(one, services.actions);
+      TakenFeatures one_taken;
+      one_taken.add(one, services.actions);
       by_command[one.instruction.utterance].add(one, services.actions);
-      keep(one.instruction.selection, own, space_);
+      keep(one.instruction.selection, one_taken, space_);
     }
     return std::make_unique<ActsOnTheLikest>(CloningMethod::learn(shown, services), std::move(by_command),
                                              taken_by(demonstrations, services.actions), revised_, space_, score_);

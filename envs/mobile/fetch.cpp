@@ -6,8 +6,8 @@
 
 #include <common/changed.hpp>
 #include <common/objects.hpp>
-#include <common/sampling.hpp>
 #include <lgabench/core/error.hpp>
+#include <lgabench/core/sampling.hpp>
 #include <mobile/content.hpp>
 #include <mobile/mobile.hpp>
 #include <mobile/near_misses.hpp>

@@ -9,8 +9,8 @@
 
 #include <common/changed.hpp>
 #include <common/objects.hpp>
-#include <common/sampling.hpp>
 #include <lgabench/core/error.hpp>
+#include <lgabench/core/sampling.hpp>
 #include <mobile/content.hpp>
 #include <mobile/place.hpp>
 #include <mobile/receivers.hpp>

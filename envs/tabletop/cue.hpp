@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include <common/sampling.hpp>
+#include <lgabench/core/sampling.hpp>
 #include <tabletop/task.hpp>
 
 namespace lgabench::tabletop {

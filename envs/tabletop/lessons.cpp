@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
-#include <common/sampling.hpp>
 #include <lgabench/core/feature_space.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/sampling.hpp>
 #include <opencv2/imgproc.hpp>
 #include <readers/features.hpp>
 #include <readers/grow.hpp>

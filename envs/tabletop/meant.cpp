@@ -57,7 +57,7 @@ struct Draw {
     for (int attempt = 0; attempt < 1000; ++attempt) {
       const FeatureSet& set = sets[random.below(static_cast<std::uint32_t>(sets.size()))];
       if (set.empty()) continue;
-      const Features one{common::any_of(set.object_types, random), common::any_of(set.textures, random)};
+      const Features one{any_of(set.object_types, random), any_of(set.textures, random)};
       if (fits(one.type, widest_m) && may_be(one)) return one;
     }
     return std::nullopt;

@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include <common/sampling.hpp>
+#include <lgabench/core/sampling.hpp>
 #include <lgabench/core/scene.hpp>
 #include <tabletop/task.hpp>
 

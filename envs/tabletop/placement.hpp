@@ -8,9 +8,9 @@
 
 #include <common/objects.hpp>
 #include <common/outline.hpp>
-#include <common/sampling.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/random.hpp>
+#include <lgabench/core/sampling.hpp>
 #include <lgabench/core/scene.hpp>
 #include <tabletop/workspace.hpp>
 

@@ -7,7 +7,7 @@
 
 #include <common/changed.hpp>
 #include <common/objects.hpp>
-#include <common/sampling.hpp>
+#include <lgabench/core/sampling.hpp>
 #include <tabletop/cue.hpp>
 #include <tabletop/meant.hpp>
 #include <tabletop/near_misses.hpp>

@@ -138,7 +138,7 @@ def action_bytes(value, count, may_stop=False):
     return numbers.tobytes()
 
 
-def named(things):
+def named(things: Any) -> list[tuple[str, str]]:
     return [(one["object_type"], one["texture"]) for one in things]
 
 

@@ -6,6 +6,7 @@ lets a process hide them. LGABENCH_FULL=1 builds every example, and with Clang t
 import json
 import os
 import pathlib
+import re
 import shutil
 import socket
 import subprocess
@@ -108,7 +109,9 @@ class Package(Consumer):
     def test_every_public_header_compiles(self):
         headers = sorted(path.relative_to(self.prefix / "include") for path in self.prefix.glob("include/**/*.hpp"))
         headers.remove(pathlib.Path("lgabench/learning/torch_learner.hpp"))  # needs LibTorch; --full builds own_network with it
-        self.assertLessEqual(len(headers), 30, "what a plugin's author has to know")
+        of_environments = re.compile("environment|core/(sampling|scenario|scene|view)[.]hpp")
+        self.assertLessEqual(len([header for header in headers if not of_environments.search(str(header))]), 30,
+                             "what the author of another plugin has to know")
         self.assertIn("method.hpp", [header.name for header in headers])
         self.assertEqual([header for header in headers if "Private to" in (self.prefix / "include" / header).read_text()], [])
         alone = [[header] for header in headers]
@@ -215,6 +218,21 @@ class NewPlugin(Consumer):
         rows = json.loads((self.dir / "my_eyes/run/summary.json").read_text())["rows"]
         self.assertIn("human+names=my_eyes", {row["method"] for row in rows})
         self.assertEqual({row["n_error"] for row in rows}, {0})
+
+    def test_an_environment(self):
+        plugin = self.build("my_world", "--kind", "environment")
+        found = {"LGABENCH_PLUGIN_PATH": str(plugin.parent), "LGABENCH_SCENARIO_PATH": str(self.dir / "my_world")}
+        checks = self.check(plugin, **found)
+        self.assertEqual(checks.pop("heat maps"), "note", "its actions have no place in the picture")
+        self.assertEqual(set(checks.values()), {"ok"})
+        self.assertIn("scenes, reach_blind", checks)
+        out = self.dir / "my_world/run"
+        self.lgabench("run", "my_world_suite.json", "--answers", "none", "--demos", "2", "--episodes", "3", "--set", "*.epochs=2",
+                      "--out", out, cwd=self.dir / "my_world", **found)
+        oracle, = (row for row in json.loads((out / "summary.json").read_text())["rows"]
+                   if (row["method"], row["scenario"]) == ("oracle", "(mean)"))
+        self.assertEqual((oracle["success"], oracle["n_error"]), (1, 0))
+        self.assertIn("identical", self.lgabench("verify", out, **found).stdout)
 
     def test_bad_names_are_refused(self):
         for name in ("My", "../outside", "1st", "a-b"):

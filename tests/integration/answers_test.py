@@ -465,7 +465,7 @@ class Live(Asking):
         self.assertIn('The command is: "Bring me the red heart."', user)
         self.assertIn('Could the target object have the object type "', user)
         self.assertEqual(len(self.server.asked), 0)
-        self.assertIn("--show-prompt excludes --score", self.call("select", "--suite", "q1", "--score", "--show-prompt", expect=2).stderr)
+        self.assertIn("--score excludes --show-prompt", self.call("select", "--suite", "q1", "--score", "--show-prompt", expect=2).stderr)
 
     def test_the_request_is_part_of_what_the_answers_are(self):
         self.server.refuses_temperature = True

@@ -385,6 +385,7 @@ class CacheCommand(Case):
         seal = json.loads(next((self.dir / "cache").iterdir()).read_bytes().rsplit(b"\n", 2)[-2])
         build = json.loads(next((self.dir / "out/cells").glob("*/status.json")).read_text())["build"]
         programs = ("engine", "lgabench-worker", "liblgabench_core.so", "liblgabench_env_tabletop.so")
+        self.assertEqual([name for name in build if "_env_" in name], ["liblgabench_env_tabletop.so"], "no other environment's")
         self.assertEqual(seal["made_from"]["builds"], {name: build[name] for name in programs})
 
 

@@ -10,7 +10,7 @@ import unittest
 from case import BUILD, Case
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2] / "examples/reach2d"
-FOUND = {"LGABENCH_ENVIRONMENT_PATH": str(BUILD / "examples/reach2d"), "LGABENCH_SCENARIO_PATH": str(SOURCE)}
+FOUND = {"LGABENCH_PLUGIN_PATH": str(BUILD / "tests/plugins/examples"), "LGABENCH_SCENARIO_PATH": str(SOURCE)}
 # Enough to see what a state is worth: 0.76 of 200 episodes with it, 0.21 without.
 LEARNS = ("--methods", "human+network=spot", "--demos", "100", "--seeds", "0", "--episodes", "200", "--set", "human.epochs=200")
 
@@ -21,7 +21,7 @@ class Steps(Case):
         self.environment.update(FOUND)
 
     def run_suite(self, *more):
-        self.call("run", str(SOURCE / "reach2d.json"), "--answers", "none", *more, "--out", "run", timeout=2000)
+        self.call("run", str(SOURCE / "reach2d_suite.json"), "--answers", "none", *more, "--out", "run", timeout=2000)
         self.assert_matches_schemas("run")
 
     def lines(self, row):
@@ -34,7 +34,7 @@ class Steps(Case):
         self.run_suite(*LEARNS)
         rows = {(row["method"], row["scenario"]): row for row in json.loads((self.dir / "run/summary.json").read_text())["rows"]}
         self.assertEqual(rows["oracle", "(mean)"]["success"], 1)
-        seen, blind = (rows["human", scenario] for scenario in ("reach_red", "reach_red_blind"))
+        seen, blind = (rows["human", scenario] for scenario in ("reach2d_red", "reach2d_blind"))
         # Newcombe's 95 % interval of the difference, from Wilson's of each.
         off = math.hypot(seen["success"] - seen["low"], blind["high"] - blind["success"])
         self.assertGreater(seen["success"] - blind["success"] - off, .4)
@@ -67,7 +67,7 @@ class Steps(Case):
                       self.call("replay", "run", f"{cell}/test/0", "--out", "a.gif", expect=2).stderr)
 
     def test_demonstrations_are_trajectories(self):
-        self.call("demos", "reach_red", "--n", "3", "--noisy", "2", "--out", "a.hdf5")
+        self.call("demos", "reach2d_red", "--n", "3", "--noisy", "2", "--out", "a.hdf5")
         self.assertRegex(self.call("demos", "--inspect", "a.hdf5").stdout, r"demo_0: ([5-9]|1\d|2\d) steps")
 
     def test_plugins_are_checked_on_sequences(self):
@@ -75,7 +75,7 @@ class Steps(Case):
         self.assertIn("good", self.call("check-plugin", str(plugins / "human.so"), "--environment", "reach2d", "--set", "epochs=2").stdout)
         told = self.call("check-plugin", str(plugins / "kinematic.so"), "--environment", "reach2d").stdout
         self.assertIn("oracle, reach", told)
-        self.assertIn("the oracle succeeds in 50 of 50 scenes", self.call("check-scenario", "reach_red").stdout)
+        self.assertIn("the oracle succeeds in 50 of 50 scenes", self.call("check-scenario", "reach2d_red").stdout)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ import unittest
 import warnings
 
 BUILD, ROOT = pathlib.Path(os.environ["LGABENCH_BUILD"]), pathlib.Path(__file__).parents[2]
-os.environ.update({"LGABENCH_ENVIRONMENT_PATH": str(BUILD / "examples/reach2d"),
+os.environ.update({"LGABENCH_PLUGIN_PATH": str(BUILD / "tests/plugins/examples"),
                    "LGABENCH_SCENARIO_PATH": str(ROOT / "examples/reach2d")})
 
 import gymnasium
@@ -18,11 +18,11 @@ from scenes_test import ENGINE
 
 
 def make(**arguments):
-    return gymnasium.make("lgabench/reach_red-v1", engine=ENGINE, split="test", **arguments)
+    return gymnasium.make("lgabench/reach2d_red-v1", engine=ENGINE, split="test", **arguments)
 
 
 def make_vec(n, **arguments):
-    return gymnasium.make_vec("lgabench/reach_red-v1", n, engine=ENGINE, split="test", **arguments).unwrapped
+    return gymnasium.make_vec("lgabench/reach2d_red-v1", n, engine=ENGINE, split="test", **arguments).unwrapped
 
 
 class Steps(unittest.TestCase):
@@ -49,7 +49,7 @@ class Steps(unittest.TestCase):
 
     def test_dense_rewards_are_refused(self):
         for build in make, lambda **arguments: make_vec(2, **arguments):
-            with self.assertRaisesRegex(ValueError, "an episode of reach_red has several steps"):
+            with self.assertRaisesRegex(ValueError, "an episode of reach2d_red has several steps"):
                 build(reward_mode="dense")
 
     def test_several_at_once_end_at_other_times_and_play_what_one_plays(self):
@@ -83,16 +83,16 @@ class Steps(unittest.TestCase):
             self.assertGreater(ended, 6)
 
     def test_methods_get_trajectories_and_states(self):
-        for one in testing.demonstrations("reach_red", 3, engine=ENGINE):
+        for one in testing.demonstrations("reach2d_red", 3, engine=ENGINE):
             self.assertGreater(len(one.steps), 2)
             self.assertEqual(one.recovery, [])
             self.assertEqual([step.observation.state.shape for step in one.steps], [(2,)] * len(one.steps))
-        with lgabench.Environment("reach_red", ENGINE) as environment:
+        with lgabench.Environment("reach2d_red", ENGINE) as environment:
             won = lgabench.evaluate(lambda seen, words: environment.expert_action(), environment, 10)
         self.assertEqual(won.success, 1)
-        names = [number.name for number in lgabench.Scenario("reach_red").state]
+        names = [number.name for number in lgabench.Scenario("reach2d_red").state]
         self.assertEqual(names, ["down", "across"])
-        self.assertEqual(lgabench.Scenario("reach_red_blind").state, ())
+        self.assertEqual(lgabench.Scenario("reach2d_blind").state, ())
 
 
 if __name__ == "__main__":

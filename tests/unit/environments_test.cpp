@@ -22,6 +22,32 @@ TEST(Environments, AreTheLibrariesBesideLgabenchsOwn) {
     EXPECT_THROW(find_environment(path), InputError) << path;
 }
 
+TEST(Environments, OfPluginsAreFoundByTheirIdAndChangeNothingElse) {
+  const Words own = environment_ids(), words = failure_words();
+  int loads = 0;
+  const LoadEnvironment mobile = [&loads] { return ++loads, &find_environment("mobile"); };
+  add_environment("added", "one hash", mobile);
+  add_environment("added", "one hash", [] { return nullptr; });  // the same plugin, found again
+  EXPECT_EQ(&find_environment("added"), &find_environment("mobile"));
+  EXPECT_EQ(environment_if_there("added"), &find_environment("added"));
+  EXPECT_EQ(loads, 1);
+  EXPECT_EQ(environment_ids(), own);
+  EXPECT_EQ(failure_words(), words);
+  EXPECT_EQ(message_of<InputError>([&] { add_environment("added", "another hash", mobile); }),
+            "environment added: another plugin has that id");
+  EXPECT_EQ(message_of<InputError>([&] { add_environment("tabletop", "one hash", mobile); }),
+            "environment tabletop: an environment of lgabench's own has that id");
+  EXPECT_SAYS(message_of<InputError>([] { find_environment("addd"); }), "(did you mean \"added\"?)");
+}
+
+TEST(Environments, ThatCannotBeLoadedAreAnErrorWhereTheirIdIsUsed) {
+  add_environment("broken", "a hash", []() -> const EnvironmentType* { throw PluginError("cannot be opened"); });
+  EXPECT_EQ(message_of<PluginError>([] { find_environment("broken"); }), "cannot be opened");
+  EXPECT_EQ(environment_if_there("broken"), nullptr);
+  EXPECT_NO_THROW(installed_tasks());
+  EXPECT_NO_THROW(failure_words());
+}
+
 TEST(Environments, TasksNameTheirLayoutsSecondSetAndExample) {
   const EnvironmentType& tabletop = find_environment("tabletop");
   const TaskInfo& sweep = find_task(tabletop, "sweep");
@@ -47,6 +73,12 @@ TEST(Environments, FailureWordsKeepTheirOrder) {
             (Words{"missed_object", "wrong_object", "blocked_way", "out_of_reach", "dropped_elsewhere", "moved_another",
                    "wrong_receiver", "bad_placement", "bad_angle", "missed_zone", "touched_obstacle", "left_workspace",
                    "not_meant", "truncated", "abstraction_empty", "method_error"}));
+}
+
+TEST(Environments, WordsThatTheyLackFollowTheirs) {
+  Words expected = failure_words();
+  expected.push_back("lost");
+  EXPECT_EQ(failure_words({"lost", "missed_object"}), expected);
 }
 
 TEST(Environments, DrawWhatAnEpisodeBeginsWith) {

@@ -210,7 +210,7 @@ TEST(Suite, APresetPlaysTheArmsThatItNamesAndAnArmNamesWhoDoesNot) {
   EXPECT_EQ(arms("letter_from_the_word_letter_members_4", "abstraction_decisive"),
             Ids({"seen_near_members_4", "new_other_near_members_4"}));
   EXPECT_EQ(arms("heart_members_1", "abstraction_decisive"), Ids({"seen_near_members_1", "new_other_near_members_1"}));
-  EXPECT_EQ(arms("heart_members_1", "").size(), 5u);
+  EXPECT_EQ(arms("heart_members_1", "").size(), 6u);
 
   const Scratch scratch("suite");
   const auto refusal = [&](const auto& change) {

@@ -300,7 +300,9 @@ TEST(Variants, AreScenariosOfTheirOwn) {
   const Scenario two = suite_scenario(suite, "heart_members_2", Truth::released);
   EXPECT_EQ(two.id, "heart_members_2");
   EXPECT_EQ(two.answers_of, "heart");
-  EXPECT_EQ(two.tests.back().id, "new_other_near_members_2") << "a mean in an arm is over scenarios of one variant";
+  const std::string variant = "_members_2";
+  for (const Arm& arm : two.tests)  // a mean in an arm is over scenarios of one variant
+    EXPECT_EQ(arm.id.substr(arm.id.size() - variant.size()), variant);
   design.engines = {}, design.methods = {}, design.options = Json::object(), design.test_scenes = TestScenes::shared;
   EXPECT_SAYS(message_of<InputError>([&] { expand(suite, design, {}, {}); }),
               "few_members.json: /test_scenes: expected per_seed, since \"members\"");

@@ -10,7 +10,6 @@
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cell/hdf5.hpp>
 #include <lgabench/cell/reference_actor.hpp>
-#include <lgabench/core/contains.hpp>
 #include <lgabench/host/messages.hpp>
 #include <lgabench/learning/featurizer.hpp>
 #include <lgabench/learning/network.hpp>
@@ -24,14 +23,14 @@ namespace {
 
 // Before the first environment is asked for.
 const bool is_found = [] {
-  ::setenv("LGABENCH_ENVIRONMENT_PATH", LGABENCH_TEST_ENVIRONMENTS, 1);
+  ::setenv("LGABENCH_PLUGIN_PATH", LGABENCH_TEST_PLUGINS, 1);
   ::setenv("LGABENCH_SCENARIO_PATH", LGABENCH_TEST_SCENARIOS, 1);
   return true;
 }();
 
 constexpr const char* utterance = "Move to the red disc.";
 
-Scenario reach() { return load_scenario("reach_red"); }
+Scenario reach() { return load_scenario("reach2d_red"); }
 
 Scenario reach_with(const Json& members) {
   Json json = reach().json;
@@ -319,7 +318,6 @@ TEST(BrokenSteps, AnEpisodeThatNeverEndsFailsAfterItsLastStep) {
   EXPECT_EQ(e.actions().size(), 20u);
   EXPECT_SAYS(message_of<EngineError>([&] { shown(scenario, 1); }),
               "scene 0 of train, step 20: the oracle's episode does not end");
-  EXPECT_TRUE(contains(failure_words(), std::string(failure::goes_on)));
 }
 
 TEST(BrokenSteps, AnOracleThatFailsDemonstratesNothing) {

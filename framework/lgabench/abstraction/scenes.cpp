@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include <lgabench/abstraction/textualization.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/perturbations.hpp>
@@ -22,7 +25,11 @@ class InOrder final : public Environment {
         id_(scenario.environment->id()),
         most_steps_(find_task(*scenario.environment, scenario.task).most_steps),
         may_stop_(scenario.may_stop),
-        state_(state_of(scenario)) {}
+        state_(state_of(scenario)),
+        space_(scenario.space),
+        size_(scenario.environment->picture_size()),
+        most_instances_(most_instances_of(scenario)),
+        of_plugin_(!contains(environment_ids(), id_)) {}
 
   const ActionSpace& action_space() const override { return environment_->action_space(); }
   int most_steps() const override { return most_steps_; }
@@ -85,7 +92,33 @@ class InOrder final : public Environment {
     return result;
   }
 
+  // lgabench's own environments are held to this by tests.
+  void check_picture(const Observation& seen) const {
+    if (seen.size.rows != size_.rows || seen.size.columns != size_.columns || seen.rgb.size() != 3 * size_.pixels() ||
+        seen.ids.size() != size_.pixels())
+      fail(fmt::format("observation: expected {} x {} pixels of rgb and ids, got {} x {} with {} and {} bytes",
+                       size_.rows, size_.columns, seen.size.rows, seen.size.columns, seen.rgb.size(), seen.ids.size()));
+    if (static_cast<int>(seen.instances.size()) > most_instances_)
+      fail(fmt::format("observation: expected at most {} instances, got {}", most_instances_, seen.instances.size()));
+    std::array<int, 256> pixels{};
+    for (const std::uint8_t id : seen.ids) ++pixels[id];
+    for (const Instance& one : seen.instances) {
+      if (one.id == 0 || pixels[one.id] != one.pixels)
+        fail(fmt::format("observation: instance {} says {} pixels, the ids hold {}", one.id, one.pixels,
+                         pixels[one.id]));
+      pixels[one.id] = 0;
+      if (!is_place(one.object_type) &&
+          (!contains(space_.object_types, one.object_type) || !contains(space_.textures, one.texture)))
+        fail(fmt::format("observation: instance {}: {} {} is no name of the space", one.id, one.texture,
+                         one.object_type));
+    }
+    const auto* const stray = std::find_if(pixels.begin() + 1, pixels.end(), [](int count) { return count != 0; });
+    if (stray != pixels.end())
+      fail(fmt::format("observation: the ids hold {}, which is no instance's", stray - pixels.begin()));
+  }
+
   Observation checked(Observation seen) const {
+    if (of_plugin_) check_picture(seen);
     if (seen.state.size() != state_.size())
       fail(fmt::format("state: expected {} numbers, got {}", state_.size(), seen.state.size()));
     for (std::size_t i = 0; i < state_.size(); ++i)
@@ -105,6 +138,10 @@ class InOrder final : public Environment {
   const int most_steps_;
   const bool may_stop_;
   const std::vector<StateNumber>& state_;
+  const FeatureSpace space_;
+  const PictureSize size_;
+  const int most_instances_;
+  const bool of_plugin_;
   std::string arm_;
   int index_ = 0, steps_ = 0;  // of the scene; since reset()
   bool has_scene_ = false, over_ = false;
@@ -140,10 +177,10 @@ Perception perception_of(const Scenario& scenario, const Arm& arm, std::optional
   if (!perceive && noise.label_noise == 0 && noise.missed_segment == 0 && axes.empty()) return nullptr;
   const std::string of_seed = own_stream(training_seed);
   const int level = arm.perturbation ? arm.perturbation->level : 0;
-  return [&scenario, noise, perceive, own, axes, level, training_seed](const Observation& seen, const Scene& scene,
-                                                                       int step) {
+  return [&scenario, noise, perceive, of_seed, axes, level, training_seed](const Observation& seen, const Scene& scene,
+                                                                           int step) {
     const auto stream = [&](const char* of) {
-      return RandomStream(fmt::format("{}/{}/{}/{}{}/{}{}", of, scene.scenario, scene.layout, scene.seed, own,
+      return RandomStream(fmt::format("{}/{}/{}/{}{}/{}{}", of, scene.scenario, scene.layout, scene.seed, of_seed,
                                       scene.index, later_stream(step)));
     };
     Observation perceived = imperfect_textualization(perceive ? perceive(seen, stream("perception")) : seen,

@@ -25,6 +25,10 @@ CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase
 /// likewise.
 CheckReport check_engine(const PluginInfo& engine, const std::string& environment, const CheckPhase& phase);
 
+/// Samples, draws and lets the oracle play scenes of every task of the environment, likewise. `engine` is for those
+/// that use one. @throws PluginError if it cannot be loaded.
+CheckReport check_environment(const std::string& id, const PluginInfo& engine, const CheckPhase& phase);
+
 /// Lets the perturbation perceive scenes of the environment ("": of all) at each level, forwards and backwards,
 /// likewise.
 /// @throws PluginError, MethodGone likewise.

@@ -16,7 +16,7 @@
 namespace lgabench {
 namespace {
 
-constexpr int scenes_a_task = 10, most_lost = 1;  // of a task
+constexpr int scenes_a_task = 10;
 constexpr std::uint64_t engine_seed = 7;
 
 // A scene played by the oracle to its end: what was seen before and after each step, and how it was judged, bit for
@@ -64,8 +64,22 @@ void use_alone(const PluginInfo& engine, CheckReport& report) {
   }
 }
 
+// What must be otherwise where a check of a task fails.
+struct Remedies {
+  const char *oracle, *reset, *memory;
+};
+constexpr Remedies of_engine{
+    "bodies must rest where reset() puts them, hang at the gripper without lag, and yield to the spatula",
+    "reset() must drop all state of the solver: warm starts, contacts, velocities, the grip",
+    "reset() must free the memory of the last episode"};
+constexpr Remedies of_environment{
+    "expert_action() must lead to success from every state that it leads to",
+    "reset() must drop all state of the last episode, and draw nothing from a clock or an address",
+    "reset() must free the memory of the last episode"};
+
 // Scenes of one task, forwards and twice backwards. Returns their bytes.
-std::string judge_task(const TaskInfo& task_info, const PluginInfo& engine, CheckReport& report) {
+std::string judge_task(const TaskInfo& task_info, const PluginInfo& engine, int most_lost, const Remedies& remedies,
+                       CheckReport& report) {
   const Scenario scenario = load_scenario(task_info.example);
   const auto environment = make_environment(scenario, load_engine(engine));
   const std::string& task = task_info.id;
@@ -91,7 +105,7 @@ std::string judge_task(const TaskInfo& task_info, const PluginInfo& engine, Chec
       lost <= most_lost ? "" : fmt::format("loses {} of {} scenes, one of them: {}", lost, scenes_a_task, last_lost),
       fmt::format("wins {} of {} scenes, {:.1f} ms each", scenes_a_task - lost, scenes_a_task,
                   1e3 * seconds / scenes_a_task),
-      "bodies must rest where reset() puts them, hang at the gripper without lag, and yield to the spatula");
+      remedies.oracle);
 
   std::string differs;
   const auto backwards = [&] {
@@ -102,14 +116,75 @@ std::string judge_task(const TaskInfo& task_info, const PluginInfo& engine, Chec
   const long long before = ProcessState::now().heap_bytes;
   backwards();
   const long long grown = (ProcessState::now().heap_bytes - before) / scenes_a_task;
-  report.judge("reset, " + task, differs, "pure: scenes in reverse order end alike, bit for bit",
-               "reset() must drop all state of the solver: warm starts, contacts, velocities, the grip");
+  report.judge("reset, " + task, differs, "pure: scenes in reverse order end alike, bit for bit", remedies.reset);
   report.judge("memory, " + task, grown > 4096 ? fmt::format("grows by {} bytes an episode", grown) : "",
-               "does not grow", "reset() must free the memory of the last episode");
+               "does not grow", remedies.memory);
   return all;
 }
 
+// heat_map's map has so many cells, whatever the picture.
+constexpr int map_rows = 32, map_columns = 64;
+
+void judge_description(const EnvironmentType& environment, CheckReport& report) {
+  const PictureSize size = environment.picture_size();
+  report.judge("description", environment.tasks().empty() ? "it has no task" : "",
+               fmt::format("{} task(s), an action of {} numbers, {} x {} pixels", environment.tasks().size(),
+                           environment.action_space().size(), size.rows, size.columns),
+               "name a task with an example scenario");
+  if (environment.action_space().places.empty())
+    report.note("heat maps",
+                "actions have no place in the picture: policy=heat_map and the rules that take a place do not run",
+                "name ActionSpace::places where two numbers of an action are a place that the picture shows");
+  else if (size.rows % map_rows != 0 || size.columns % map_columns != 0 || size.columns != 2 * size.rows)
+    report.note("heat maps",
+                fmt::format("{} x {} pixels: policy=heat_map has {} x {} cells, and distorts or refuses the picture",
+                            size.rows, size.columns, map_rows, map_columns),
+                "128 x 256 pixels fit");
+}
+
+// Sampled twice, and drawn as reset() shows them.
+void judge_scenes(const EnvironmentType& environment, const TaskInfo& task, const PluginInfo& engine,
+                  CheckReport& report) {
+  const Scenario scenario = load_scenario(task.example);
+  const auto played = make_environment(scenario, load_engine(engine));
+  std::string fault;
+  for (const std::string& layout : task.layouts)
+    for (int i = 0; i < scenes_a_task && fault.empty(); ++i) {
+      const auto scene_of = [&] { return test_scene(scenario, layout, scenario.tests.front().id, engine_seed, i); };
+      const Scene scene = scene_of();
+      if (scene.hash() != scene_of().hash())
+        fault = fmt::format("scene {} of {} differs the second time", i, layout);
+      else if (bytes_of(environment.draw(scene)) != bytes_of(played->reset(scene)))
+        fault = fmt::format("draw() shows scene {} of {} otherwise than reset()", i, layout);
+    }
+  report.judge("scenes, " + task.id, fault, "the same scene the second time, drawn as reset() shows it",
+               "draw every random number from the stream that is given, and read no clock");
+}
+
 }  // namespace
+
+CheckReport check_environment(const std::string& id, const PluginInfo& engine, const CheckPhase& phase) {
+  CheckReport report;
+  const ProcessState at_first = ProcessState::now();
+  std::string all, doing = "its description";
+  try {
+    phase(doing, report);
+    const EnvironmentType& environment = find_environment(id);
+    judge_description(environment, report);
+    for (const TaskInfo& task : environment.tasks()) {
+      phase(doing = "scenes of " + task.example, report);
+      judge_scenes(environment, task, engine, report);
+      all += judge_task(task, engine, 0, of_environment, report);
+    }
+    judge_leftovers(report, [&at_first] { return ProcessState::now().beyond(at_first); });
+  } catch (const PluginError&) {
+    throw;
+  } catch (const std::exception& e) {
+    report.problem(doing, e.what(), "this call must succeed: a run makes it too");
+  }
+  report.hashes = {{"episodes", sha256(all)}};
+  return report;
+}
 
 CheckReport check_engine(const PluginInfo& engine, const std::string& environment, const CheckPhase& phase) {
   CheckReport report;
@@ -121,7 +196,8 @@ CheckReport check_engine(const PluginInfo& engine, const std::string& environmen
     judge_leftovers(report, [&at_first] { return ProcessState::now().beyond(at_first); });
     for (const TaskInfo& task : environment.empty() ? installed_tasks() : find_environment(environment).tasks()) {
       phase(doing = "scenes of " + task.example, report);
-      all += judge_task(task, engine, report);
+      constexpr int most_lost = 1;  // an engine may grip amiss
+      all += judge_task(task, engine, most_lost, of_engine, report);
     }
   } catch (const PluginError&) {
     throw;

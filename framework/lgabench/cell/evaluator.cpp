@@ -15,24 +15,24 @@ Episode play(Environment& environment, const TestScene& test, const Actor& actor
   if (test.abstraction_empty) return episode;
   Observation observation = environment.reset(scene);
   if (test.view != View()) observation = environment.look(test.view);
-  try {
-    for (int step = 0;; ++step) {
-      if (test.perception) observation = test.perception(observation, scene, step);
+  for (int step = 0;; ++step) {
+    if (test.perception) observation = test.perception(observation, scene, step);  // a plugin's fault is no method's
+    try {
       const Move move = actor.act(environment, scene, observation, step);
       StepResult result = environment.step(move.action);  // refuses one that is not executable()
       episode.failure = result.failure;
       if (episode.taken == 0) episode.taken = result.taken;
       episode.add(move.action.empty() ? Action() : as_stored(environment.action_space(), move.action));
       episode.input_seen = step == 0 || move.input_seen == false ? move.input_seen : episode.input_seen;
-      if (environment.most_steps() == 1 || result.terminated || result.truncated) break;
+      if (environment.most_steps() == 1 || result.terminated || result.truncated) return episode;
       observation = std::move(result.observation);
+    } catch (const MethodError& e) {
+      to_stderr("episode {} of {}: {}\n", scene.index, scene.arm, e.what());
+      episode.failure = failure::method_error;
+      episode.error = e.what();
+      return episode;
     }
-  } catch (const MethodError& e) {
-    to_stderr("episode {} of {}: {}\n", scene.index, scene.arm, e.what());
-    episode.failure = failure::method_error;
-    episode.error = e.what();
   }
-  return episode;
 }
 
 Actor::Told told_by_command(const std::vector<Instruction>& instructions) {

@@ -4,10 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 #include <mutex>
-#include <sstream>
 
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/files.hpp>
@@ -18,40 +16,70 @@ namespace {
 
 constexpr const char *prefix = "liblgabench_env_", *suffix = ".so";
 
-constexpr const char* path_variable = "LGABENCH_ENVIRONMENT_PATH";
-
-// Libraries of all that are installed, by id; the first directory that has one wins.
-const std::map<std::string, fs::path>& installed() {
-  static const std::map<std::string, fs::path> files = [] {
-    std::vector<fs::path> directories{library_directory()};
-    const char* const listed = std::getenv(path_variable);
-    std::istringstream words(listed ? listed : "");
-    for (std::string word; std::getline(words, word, ':');)
-      if (!word.empty()) directories.emplace_back(word);
-    std::map<std::string, fs::path> found;
-    const std::string first = prefix, last = suffix;
-    for (const fs::path& directory : directories) {
-      std::error_code none_to_list;
-      for (const auto& entry : fs::directory_iterator(directory, none_to_list)) {
-        const std::string name = entry.path().filename();
-        if (name.size() > first.size() + last.size() && name.compare(0, first.size(), first) == 0 &&
-            name.compare(name.size() - last.size(), last.size(), last) == 0)
-          found.emplace(name.substr(first.size(), name.size() - first.size() - last.size()), entry.path());
-      }
-    }
-    return found;
-  }();
-  return files;
-}
-
 // Never closed: objects of the environment may live as long as the program.
 const EnvironmentType* load(const std::string& id) {
-  const fs::path file = environment_file(id);
+  const fs::path file = library_directory() / (prefix + id + suffix);
   void* const library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!library) throw InputError(fmt::format("environment {}: {}", id, ::dlerror()));
   const auto entry = reinterpret_cast<decltype(&lgabench_environment)>(::dlsym(library, "lgabench_environment"));
   if (!entry) throw InputError(fmt::format("environment {}: {}", id, ::dlerror()));
   return entry();
+}
+
+// Every environment that was asked for or added.
+class KnownEnvironments {
+ public:
+  std::function<std::string(const std::string& id)> look;  // set before main()
+
+  void add(const std::string& id, const std::string& sha256, LoadEnvironment load) {
+    if (contains(environment_ids(), id))
+      throw InputError(fmt::format("environment {}: an environment of lgabench's own has that id", id));
+    const std::lock_guard lock(mutex_);
+    const Known& known = known_.emplace(id, Known{sha256, std::move(load)}).first->second;
+    if (known.sha256 != sha256) throw InputError(fmt::format("environment {}: another plugin has that id", id));
+  }
+
+  const EnvironmentType& find(const std::string& id) {
+    const std::vector<std::string> own = environment_ids();
+    if (contains(own, id)) {
+      const std::lock_guard lock(mutex_);
+      known_.emplace(id, Known{"", [id] { return load(id); }});
+    } else if (!has(id)) {
+      const std::string refused = look ? look(id) : "";
+      if (!has(id)) throw InputError(none_named("environment", id, ids(own)) + refused);
+    }
+    const std::lock_guard lock(mutex_);
+    Known& known = known_.at(id);
+    if (!known.type) known.type = known.load();
+    return *known.type;
+  }
+
+ private:
+  struct Known {
+    std::string sha256;
+    LoadEnvironment load;
+    const EnvironmentType* type = nullptr;
+  };
+
+  bool has(const std::string& id) {
+    const std::lock_guard lock(mutex_);
+    return known_.count(id) != 0;
+  }
+
+  std::vector<std::string> ids(std::vector<std::string> own) {
+    const std::lock_guard lock(mutex_);
+    for (const auto& one : known_)
+      if (!contains(own, one.first)) own.push_back(one.first);
+    return own;
+  }
+
+  std::recursive_mutex mutex_;  // an environment may ask for another one while it is loaded
+  std::map<std::string, Known> known_;
+};
+
+KnownEnvironments& known_environments() {
+  static auto& known = *new KnownEnvironments;  // never destroyed: a plugin's threads may still ask
+  return known;
 }
 
 void append_new(std::vector<std::string>& words, const std::vector<std::string>& more) {
@@ -70,25 +98,37 @@ std::string own_stream(std::optional<std::uint64_t> training_seed) {
 std::string later_stream(int step) { return step == 0 ? "" : fmt::format("/step {}", step); }
 
 std::vector<std::string> environment_ids() {
-  std::vector<std::string> ids;
-  for (const auto& [id, file] : installed()) ids.push_back(id);
+  static const std::vector<std::string> ids = [] {
+    std::vector<std::string> found;
+    const std::string first = prefix, last = suffix;
+    for (const auto& entry : fs::directory_iterator(library_directory())) {
+      const std::string name = entry.path().filename();
+      if (name.size() > first.size() + last.size() && name.compare(0, first.size(), first) == 0 &&
+          name.compare(name.size() - last.size(), last.size(), last) == 0)
+        found.push_back(name.substr(first.size(), name.size() - first.size() - last.size()));
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+  }();
   return ids;
 }
 
-fs::path environment_file(const std::string& id) {
-  const auto found = installed().find(id);
-  if (found == installed().end()) throw InputError(none_named("environment", id, environment_ids()));
-  return found->second;
+const EnvironmentType& find_environment(const std::string& id) { return known_environments().find(id); }
+
+const EnvironmentType* environment_if_there(const std::string& id) {
+  try {
+    return &find_environment(id);
+  } catch (const Error&) {
+    return nullptr;
+  }
 }
 
-const EnvironmentType& find_environment(const std::string& id) {
-  environment_file(id);  // says which there are
-  static std::mutex mutex;
-  static std::map<std::string, const EnvironmentType*> loaded;
-  const std::lock_guard lock(mutex);
-  const EnvironmentType*& type = loaded[id];
-  if (!type) type = load(id);
-  return *type;
+void add_environment(const std::string& id, const std::string& sha256, LoadEnvironment load) {
+  known_environments().add(id, sha256, std::move(load));
+}
+
+void look_for_environments(std::function<std::string(const std::string& id)> look) {
+  known_environments().look = std::move(look);
 }
 
 const EnvironmentType& environment_with_task(const std::string& id) {
@@ -119,13 +159,11 @@ std::vector<std::string> installed_layouts() {
   return layouts;
 }
 
-std::vector<std::string> failure_words() {
+std::vector<std::string> failure_words(const std::set<std::string>& found) {
   std::vector<std::string> words;
   for (const std::string& id : environment_ids()) append_new(words, find_environment(id).failures());
   append_new(words, {failure::truncated, failure::abstraction_empty, failure::method_error});
-  const std::vector<TaskInfo> tasks = installed_tasks();
-  if (std::any_of(tasks.begin(), tasks.end(), [](const TaskInfo& task) { return task.most_steps > 1; }))
-    append_new(words, {failure::goes_on});
+  append_new(words, {found.begin(), found.end()});
   return words;
 }
 

@@ -1,10 +1,10 @@
 // The installed environments: what the framework asks of an environment beside playing scenes (environment.hpp).
 #pragma once
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -155,26 +155,36 @@ class EnvironmentType {
   virtual std::unique_ptr<Environment> make(std::unique_ptr<PhysicsWorld> engine, const Scenario& scenario) const = 0;
 };
 
-/// The environment named `id`: the shared library lgabench_env_ID beside lgabench's own, or in a directory that the
-/// variable LGABENCH_ENVIRONMENT_PATH lists, loaded when it is first asked for. @throws InputError for one that is not
-/// installed.
+/// The environment named `id`: lgabench's own, the shared library lgabench_env_ID beside its others, or one that was
+/// added. It is loaded when it is first asked for. Any thread. @throws InputError for one that is not known;
+/// PluginError for one that cannot be loaded.
 const EnvironmentType& find_environment(const std::string& id);
-/// Its library. @throws as above
-std::filesystem::path environment_file(const std::string& id);
+/// The same; nullptr where find_environment() throws.
+const EnvironmentType* environment_if_there(const std::string& id);
 
-/// Ids of all that are installed, sorted.
+/// Loads an environment. What it returns lives as long as the program.
+using LoadEnvironment = std::function<const EnvironmentType*()>;
+/// Makes an environment known that is not lgabench's own: a plugin's. Once an id is known, the later `load` is ignored
+/// where `sha256` is the same. Any thread. @throws InputError for an id that is taken.
+void add_environment(const std::string& id, const std::string& sha256, LoadEnvironment load);
+/// Sets what find_environment() calls before it gives up on an id. It may add environments, and returns why a file of
+/// that name was refused, or "". One thread, before main().
+void look_for_environments(std::function<std::string(const std::string& id)> look);
+
+/// Ids of lgabench's own environments, sorted. Those of plugins are not among them: installing one changes no run.
 std::vector<std::string> environment_ids();
-/// The installed environment that has the task. @throws InputError that lists the known tasks.
+/// lgabench's own environment that has the task. @throws InputError that lists the known tasks.
 const EnvironmentType& environment_with_task(const std::string& id);
 
-/// Tasks of all that are installed.
+/// Tasks of lgabench's own environments.
 std::vector<TaskInfo> installed_tasks();
 /// Their ids.
 std::vector<std::string> installed_task_ids();
 /// Layouts of all tasks, each once.
 std::vector<std::string> installed_layouts();
-/// Words for a failure, in a report's order: of all environments, then the framework's.
-std::vector<std::string> failure_words();
+/// Words for a failure, in a report's order: of lgabench's own environments, the framework's, then those of `found`
+/// that are neither, since a plugin's environment has its own.
+std::vector<std::string> failure_words(const std::set<std::string>& found = {});
 
 /// The layouts that can show the scenario's scenes. The first is the default.
 std::vector<std::string> layouts_of(const Scenario& scenario);

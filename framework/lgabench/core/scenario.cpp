@@ -253,8 +253,9 @@ Scenario read_scenario(const Json& json, const std::string& file) {
       named(reader.at("task"), [&](const std::string& id) -> const TaskInfo& { return find_task(environment, id); });
   s.task = task.id;
   s.second = task.second;
-  const std::vector<std::string> own = environment.scenario_members(task), of_scenes = environment.scene_members(task);
-  std::vector<std::string> members = own;
+  const std::vector<std::string> of_task = environment.scenario_members(task),
+                                 of_scenes = environment.scene_members(task);
+  std::vector<std::string> members = of_task;
   members.insert(members.end(),
                  {"id", "environment", "task", "feature_space", "commands", "answers_of", "answers", "train", "tests",
                   "played", "questions", "may_stop", "axes", "truth", "printed", "note"});

@@ -12,6 +12,10 @@ const PluginInfo* acting_plugin(const Cell& cell, const Catalogue& catalogue) {
   return cell.method.acts ? &catalogue.find("method", cell.method.acts->id) : nullptr;
 }
 
+const PluginInfo* environment_plugin(const Cell& cell, const Catalogue& catalogue) {
+  return cell.has_plugin_environment() ? &catalogue.find("environment", cell.environment) : nullptr;
+}
+
 std::vector<PluginInfo> axis_plugins(const Cell& cell, const Catalogue& catalogue) {
   std::vector<PluginInfo> plugins;
   for (const std::string& id : cell.plugin_axes()) plugins.push_back(catalogue.find("perturbation", id));
@@ -26,8 +30,12 @@ const PluginInfo* perceiver_plugin(const Cell& cell, const Catalogue& catalogue)
 Json build_of(const Cell& cell, const Catalogue& catalogue) {
   Json build = build_hashes(catalogue.find("engine", cell.engine), method_plugin(cell, catalogue), cell.needs_axes());
   if (const PluginInfo* acts = acting_plugin(cell, catalogue)) build["acts"] = acts->sha256;
-  for (const PluginInfo& axis : axis_plugins(cell, catalogue)) add_seen_through(build, axis);
-  if (const PluginInfo* perceiver = perceiver_plugin(cell, catalogue)) add_seen_through(build, *perceiver);
+  if (const PluginInfo* environment = environment_plugin(cell, catalogue))
+    add_named(build, *environment);
+  else
+    build[cell.environment_in_build()] = library_hash(cell.environment_in_build());
+  for (const PluginInfo& axis : axis_plugins(cell, catalogue)) add_named(build, axis);
+  if (const PluginInfo* perceiver = perceiver_plugin(cell, catalogue)) add_named(build, *perceiver);
   if (cell.reading.needs_library()) build[seeing_library] = library_hash(seeing_library);
   return build;
 }

@@ -11,6 +11,8 @@ namespace lgabench {
 const PluginInfo* method_plugin(const Cell& cell, const Catalogue& catalogue);
 /// What acts in place of it; null where the method does. @throws as method_plugin().
 const PluginInfo* acting_plugin(const Cell& cell, const Catalogue& catalogue);
+/// What its scenes are of; null where that is lgabench's own. @throws as method_plugin().
+const PluginInfo* environment_plugin(const Cell& cell, const Catalogue& catalogue);
 /// The plugins whose axes its arms have. @throws as method_plugin().
 std::vector<PluginInfo> axis_plugins(const Cell& cell, const Catalogue& catalogue);
 /// What reads its names; null where no plugin does. @throws as method_plugin().

@@ -118,7 +118,7 @@ Design apply(const JsonReader& overrides, Design design) {
   overrides.only(members);
   if (overrides.has("scenarios"))
     design.scenarios = distinct_names(overrides.at("scenarios"), "scenario", scenario_ids());
-  if (overrides.has("layouts")) design.layouts = distinct_names(overrides.at("layouts"), "layout", installed_layouts());
+  if (overrides.has("layouts")) design.layouts = distinct_names(overrides.at("layouts"));
   if (overrides.has("engines")) design.engines = distinct_names(overrides.at("engines"));
   if (overrides.has("methods")) design.methods = distinct_names(overrides.at("methods"));
   if (overrides.has("demonstrations"))

@@ -116,7 +116,7 @@ Json build_of(const Part& part, const Cell& cell) {
   };
   plugin("engine", cell.engine);
   if (!cell.method.is_reference()) plugin("method", cell.method.id);
-  for (const std::string& name : seen_through_in_build(cell))
+  for (const std::string& name : named_in_build(cell))
     if (const auto found = part.programs().find(name); found != part.programs().end()) build[name] = *found;
   return build;
 }

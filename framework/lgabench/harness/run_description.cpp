@@ -54,6 +54,7 @@ RunRecord describe(const RunPlan& plan, const Catalogue& catalogue) {
   for (const Cell& cell : plan.cells) {
     run.cells.push_back(key(cell));
     name(catalogue.find("engine", cell.engine));
+    if (const PluginInfo* environment = environment_plugin(cell, catalogue)) name(*environment);
     for (const PluginInfo& axis : axis_plugins(cell, catalogue)) name(axis);
     if (const PluginInfo* perceiver = perceiver_plugin(cell, catalogue)) name(*perceiver);
     if (const PluginInfo* method = method_plugin(cell, catalogue)) {
@@ -66,7 +67,7 @@ RunRecord describe(const RunPlan& plan, const Catalogue& catalogue) {
       }
     }
     run.build.update(build_of(cell, catalogue));
-    for (const std::string& plugin : seen_through_in_build(cell)) run.build.erase(plugin);
+    for (const std::string& plugin : named_in_build(cell)) run.build.erase(plugin);
   }
   for (const char* plugin : {"engine", "method", "python", "acts"}) run.build.erase(plugin);
   run.suite = plan.request.at("suite");

@@ -11,7 +11,6 @@
 #include <map>
 
 #include <lgabench/core/directories.hpp>
-#include <lgabench/core/environments.hpp>
 #include <lgabench/core/file_lock.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/perturbations.hpp>
@@ -56,7 +55,7 @@ void expect_taken_up(const fs::path& path, const RunRecord& run, Existing existi
 
 }  // namespace
 
-std::string library_hash(const char* name) {
+std::string library_hash(const std::string& name) {
   static std::map<std::string, std::string> hashes;
   std::string& hash = hashes[name];
   if (hash.empty()) hash = sha256_file(program_directory().parent_path() / "lib" / name);
@@ -70,10 +69,6 @@ Json build_hashes(const PluginInfo& engine, const PluginInfo* method, bool axes)
     for (const char* name : {"lgabench-worker", "lgabench-method"}) hashes[name] = sha256_file(bin / name);
     for (const char* name : {"liblgabench_core.so", "liblgabench_learning.so"})
       hashes[name] = sha256_file(bin.parent_path() / "lib" / name);
-    for (const std::string& id : environment_ids()) {
-      const fs::path file = environment_file(id);
-      hashes[file.filename().string()] = sha256_file(file);
-    }
     return hashes;
   }();
   Json build = programs;
@@ -84,14 +79,15 @@ Json build_hashes(const PluginInfo& engine, const PluginInfo* method, bool axes)
   return build;
 }
 
-std::vector<std::string> seen_through_in_build(const Cell& cell) {
+std::vector<std::string> named_in_build(const Cell& cell) {
   std::vector<std::string> names;
+  if (cell.has_plugin_environment()) names.push_back(cell.environment_in_build());
   for (const std::string& id : cell.plugin_axes()) names.push_back("perturbation " + id);
   if (const std::string id = cell.reading.plugin(); !id.empty()) names.push_back("perceiver " + id);
   return names;
 }
 
-void add_seen_through(Json& build, const PluginInfo& plugin) {
+void add_named(Json& build, const PluginInfo& plugin) {
   const std::string name = plugin.kind + " " + plugin.id;
   build[name] = plugin.sha256;
   if (plugin.python.is_null()) return;

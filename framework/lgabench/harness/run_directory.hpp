@@ -15,16 +15,17 @@
 namespace lgabench {
 
 /// SHA-256 of one of lgabench's own libraries.
-std::string library_hash(const char* name);
+std::string library_hash(const std::string& name);
 
 /// SHA-256 of what computes a cell: the worker, the framework's libraries, "engine" and "method" (the plugins' files;
 /// no "method" for a reference row); the library of perturbations where the cell needs its `axes`.
 Json build_hashes(const PluginInfo& engine, const PluginInfo* method, bool axes);
 
-/// What the files of the cell's axes and of its perceiver are called there: "perturbation fog", "perceiver mine".
-std::vector<std::string> seen_through_in_build(const Cell& cell);
+/// What the files of the cell's environment, of its axes and of its perceiver are called there where they are plugins':
+/// "environment reach", "perturbation fog", "perceiver mine".
+std::vector<std::string> named_in_build(const Cell& cell);
 /// Adds such a plugin and, of one in Python, what it was described with.
-void add_seen_through(Json& build, const PluginInfo& plugin);
+void add_named(Json& build, const PluginInfo& plugin);
 
 /// The run of those settings, started last, in a directory beside `wanted` whose name differs from its in the hash
 /// before `suffix` alone: another build's. "" if there is none.

@@ -302,6 +302,7 @@ bool is_strangers(const Cell& cell, const Catalogue& catalogue) {
 bool has_own_arithmetic(const Cell& cell, const Catalogue& catalogue) {
   std::vector<PluginInfo> plugins = axis_plugins(cell, catalogue);
   plugins.push_back(catalogue.find("engine", cell.engine));
+  if (const PluginInfo* environment = environment_plugin(cell, catalogue)) plugins.push_back(*environment);
   if (const PluginInfo* method = trained_plugin(cell, catalogue)) plugins.push_back(*method);
   if (const PluginInfo* perceiver = perceiver_plugin(cell, catalogue)) plugins.push_back(*perceiver);
   return std::all_of(plugins.begin(), plugins.end(), [&](const PluginInfo& plugin) {
@@ -354,6 +355,7 @@ CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& ce
               plan.confined, worker_limits(plan.pool),
               plan.live};
   job.keeps_policy = plan.keeps_policies;
+  if (const PluginInfo* environment = environment_plugin(cell, catalogue)) job.environment = *environment;
   job.axes = axis_plugins(cell, catalogue);
   if (const PluginInfo* perceiver = perceiver_plugin(cell, catalogue)) job.perceiver = *perceiver;
   if (const PluginInfo* method = method_plugin(cell, catalogue)) {

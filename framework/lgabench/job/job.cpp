@@ -64,6 +64,8 @@ static void fields(LiveModel& live, Fields& field) {
 
 static void fields(CellJob& job, Fields& field) {
   const JsonReader* const reader = field.reading();
+  field("environment", job.environment, when(job.environment.has_value()));
+  if (reader && job.environment) add_environment(*job.environment);  // before the cell's scenario is read
   if (reader)
     job.cell = read_cell(reader->at("cell").json(), reader->file() + ": /cell");
   else
@@ -100,6 +102,8 @@ static void fields(CheckJob& job, Fields& field) {
   field("environment", job.environment);
   field("method", job.method, when(job.method.has_value()));
   field("perturbation", job.perturbation, when(job.perturbation.has_value()));
+  field("checked_environment", job.checked_environment, when(job.checked_environment.has_value()));
+  if (field.reading() && job.checked_environment) add_environment(*job.checked_environment);
 }
 
 static void fields(AskJob& job, Fields& field) {

@@ -49,11 +49,13 @@ struct CellJob {
   bool attributed = true;            // whether the method is told the truth in the end, to find causes
   std::optional<std::vector<std::string>> debugger{};  // of HostJob
   bool keeps_policy = false;                           // what is learned stays with the cell
+  std::optional<PluginInfo> environment{};             // of its scenes, where that is a plugin
   std::vector<PluginInfo> axes{};                      // perturbations that its scenario has of plugins
   std::optional<PluginInfo> perceiver{};               // what reads the cell's names, where that is a plugin
 };
 Json to_json(const CellJob& job);
-/// @throws InputError; PluginError where a plugin is refused, or another one by now.
+/// Makes its environment's plugin known. @throws InputError; PluginError where a plugin is refused, or another one by
+/// now.
 CellJob read_cell_job(const JsonReader& reader);
 
 /// lgabench-worker check-job
@@ -65,8 +67,9 @@ struct CheckJob {
   int perturb = 0;                   // as perturb_heap()
   std::filesystem::path report;      // gets a CheckReport
   Limits limits{};
-  std::string environment{};                 // to play in; "": check_method() and the like say which
-  std::optional<PluginInfo> perturbation{};  // that is checked instead; or a perceiver
+  std::string environment{};                        // to play in; "": check_method() and the like say which
+  std::optional<PluginInfo> perturbation{};         // that is checked instead; or a perceiver
+  std::optional<PluginInfo> checked_environment{};  // that is checked instead
 };
 Json to_json(const CheckJob& job);
 /// @throws as read_cell_job().

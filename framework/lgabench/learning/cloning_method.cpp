@@ -178,8 +178,8 @@ std::unique_ptr<Policy> CloningMethod::restore(const std::string& saved, Service
   SavedInputs saved_inputs;
   saved_inputs.learned(archive);
   PolicyInputs offered = offered_by(inputs(services.options), options);
-  offered.space = own.space;
-  PolicyInputs seen = inputs_of(options.policy, offered, own.native);
+  offered.space = saved_inputs.space;
+  PolicyInputs seen = inputs_of(options.policy, offered, saved_inputs.native);
   Featurizer featurizer(seen, services.actions, services.state);
   std::unique_ptr<Learner> untrained = learner(featurizer.shape(), services);
   auto policy = std::make_unique<CloningPolicy>(saved_inputs.native, std::move(offered), std::move(seen),

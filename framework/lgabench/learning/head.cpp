@@ -16,13 +16,13 @@ Head::Head(const NetworkShape& shape, Parameters& parameters, const Kernels& ker
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     if (deep == is_text(i) && !is_wide(i) && !is_state(i)) continue;  // the towers have one, or the text has
     Input& input = inputs_[i];
-    const LayerKind own = is_wide(i)    ? wide_linear
-                          : is_state(i) ? state_linear
-                          : is_text(i)  ? text_linear
-                                        : tower_linear;
-    input.own.emplace(own, parameters, kernels);
-    input.own_bias = parameters.take(input.own->outputs());
-    name({&*input.own}, is_wide(i) ? wide_features : hidden_features, input.own_bias);
+    const LayerKind kind = is_wide(i)    ? wide_linear
+                           : is_state(i) ? state_linear
+                           : is_text(i)  ? text_linear
+                                         : tower_linear;
+    input.linear.emplace(kind, parameters, kernels);
+    input.linear_bias = parameters.take(input.linear->outputs());
+    name({&*input.linear}, is_wide(i) ? wide_features : hidden_features, input.linear_bias);
   }
   std::vector<const Linear*> shares;
   for (std::size_t i = 0; i < inputs_.size(); ++i) {

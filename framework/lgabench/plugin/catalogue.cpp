@@ -12,6 +12,20 @@
 #include <lgabench/plugin/reader.hpp>
 
 namespace lgabench {
+namespace {
+
+constexpr const char* found_elsewhere = "; other plugins are found with --plugin-path DIR";
+
+// Programs without --plugin-path, and scenarios that are read before it was, find environments where plugins are.
+const bool environments_are_looked_for = [] {
+  look_for_environments([](const std::string& id) {
+    return scan_plugins(plugin_directories()).refusals_of(id) +
+           "; others are found with --plugin-path or $LGABENCH_PLUGIN_PATH";
+  });
+  return true;
+}();
+
+}  // namespace
 
 Json to_json(const PluginInfo& plugin) {
   Json json{{"file", plugin.file.string()},
@@ -36,11 +50,15 @@ const PluginInfo& Catalogue::find(const std::string& kind, const std::string& id
     if (plugin.kind == kind) known.push_back(plugin.id);
   }
   std::sort(known.begin(), known.end());
-  std::string message = none_named(kind, id, known);
+  throw PluginError(none_named(kind, id, known) + refusals_of(id) + found_elsewhere);
+}
+
+std::string Catalogue::refusals_of(const std::string& id) const {
+  std::string all;
   for (const auto& [file, reason] : refused)
     if (file.stem() == id || file.extension() != ".so")  // of that name, or a whole directory
-      message += fmt::format("; {} was refused: {}", file.string(), reason);
-  throw PluginError(message + "; other plugins are found with --plugin-path DIR");
+      all += fmt::format("; {} was refused: {}", file.string(), reason);
+  return all;
 }
 
 std::vector<fs::path> plugin_directories(const std::vector<fs::path>& extra) {
@@ -85,8 +103,9 @@ Catalogue scan_plugins(const std::vector<fs::path>& directories) {
         for (const auto& other : catalogue.plugins)
           if (other.kind == plugin.kind && other.id == plugin.id)
             throw PluginError(fmt::format("{} \"{}\" is already in {}", plugin.kind, plugin.id, other.file.string()));
+        if (plugin.kind == "environment") add_environment(plugin);
         catalogue.plugins.push_back(std::move(plugin));
-      } catch (const PluginError& e) {
+      } catch (const Error& e) {
         catalogue.refused.push_back({file, e.what()});
       }
     }

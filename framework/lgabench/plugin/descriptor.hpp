@@ -15,7 +15,7 @@ namespace lgabench {
 struct PluginDescriptor {
   char magic[16];
   std::uint32_t struct_size, abi;
-  char kind[16];  // "method", "engine", "perturbation" or "perceiver"
+  char kind[16];  // "method", "engine", "perturbation", "perceiver", "environment"
   char asks[16];  // whom a method asks beside the language model: "specify", "edit", "accept", "truth", "network", ""
   char id[64];    // lower-case letters, digits, underscores; starts with a letter
   char version[32];  // the plugin's own
@@ -30,7 +30,7 @@ struct PluginDescriptor {
 static_assert(sizeof(PluginDescriptor) == 4664, "the descriptor has no padding");
 
 /// Exported as `lga_plugin_v1`. The host owns what create() returns: a Method*, PhysicsWorld*,
-/// ObservationPerturbation* or Perceiver* as void*.
+/// ObservationPerturbation*, Perceiver* or EnvironmentType* as void*.
 struct PluginEntry {
   const PluginDescriptor* descriptor;
   void* (*create)();

@@ -88,4 +88,14 @@ std::unique_ptr<ObservationPerturbation> load_perturbation(const PluginInfo& plu
 
 std::unique_ptr<Perceiver> load_perceiver(const PluginInfo& plugin) { return load<Perceiver>(plugin, "perceiver"); }
 
+void add_environment(const PluginInfo& plugin) {
+  add_environment(plugin.id, plugin.sha256, [plugin] {
+    auto type = load<EnvironmentType>(plugin, "environment");
+    if (type->id() != plugin.id)
+      throw PluginError(fmt::format("plugin {} ({}): its EnvironmentType calls itself \"{}\"", plugin.id,
+                                    plugin.file.string(), type->id()));
+    return type.release();  // scenarios point to it
+  });
+}
+
 }  // namespace lgabench

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/method.hpp>
 #include <lgabench/core/observation_perturbation.hpp>
@@ -49,9 +50,11 @@ struct Catalogue {
   std::vector<PluginInfo> plugins;
   std::vector<Refusal> refused;
 
-  /// `kind` is "method", "engine", "perturbation" or "perceiver". @throws PluginError that lists the known ids and
-  /// repeats the refusal of a file of that name.
+  /// `kind` is "method", "engine", "perturbation", "perceiver" or "environment". @throws PluginError that lists the
+  /// known ids and repeats the refusal of a file of that name.
   const PluginInfo& find(const std::string& kind, const std::string& id) const;
+  /// "; FILE was refused: REASON" for each file of that name, and for each directory.
+  std::string refusals_of(const std::string& id) const;
 };
 
 /// Where plugins are looked for: the shipped ones', $LGABENCH_PLUGIN_PATH (colon-separated), then `extra` (from the
@@ -64,7 +67,8 @@ bool is_site_packages(const fs::path& directory);
 /// Reads each *.so of the directories, in their order and by name within each; one may also be a .so itself, and one of
 /// installed Python packages is left out (host/installed_methods.hpp). What is
 /// refused does not stop the rest, and a directory without a *.so is refused;
-/// of two with the same kind and id the later is refused.
+/// of two with the same kind and id the later is refused. Environments among them are known from then on
+/// (find_environment()), and opened where they are asked for.
 Catalogue scan_plugins(const std::vector<fs::path>& directories);
 
 /// Opens the plugin (for good: it is never closed) and makes one object of it.
@@ -74,6 +78,9 @@ std::unique_ptr<Method> load_method(const PluginInfo& plugin);
 std::unique_ptr<PhysicsWorld> load_engine(const PluginInfo& plugin);
 std::unique_ptr<ObservationPerturbation> load_perturbation(const PluginInfo& plugin);
 std::unique_ptr<Perceiver> load_perceiver(const PluginInfo& plugin);
+/// Makes an environment's plugin known, which is opened when find_environment() is asked for its id. @throws as
+/// add_environment()
+void add_environment(const PluginInfo& plugin);
 
 /// Adds the axes of its perturbations (add_plugin_axis). One whose id is taken is refused.
 void add_axes(Catalogue& catalogue);

@@ -244,9 +244,9 @@ PluginInfo inspect_plugin(const fs::path& file) {
   plugin.fingerprint = text(d.fingerprint, "fingerprint");
   check_fingerprint(plugin.fingerprint);
   plugin.kind = text(d.kind, "kind");
-  if (plugin.kind != "method" && plugin.kind != "engine" && plugin.kind != "perturbation" && plugin.kind != "perceiver")
-    throw PluginError(fmt::format(
-        "descriptor: kind \"{}\", expected \"method\", \"engine\", \"perturbation\" or \"perceiver\"", plugin.kind));
+  constexpr std::array kinds{"method", "engine", "perturbation", "perceiver", "environment"};
+  if (!contains(kinds, plugin.kind))
+    throw PluginError(fmt::format("descriptor: kind \"{}\", expected one of: {}", plugin.kind, fmt::join(kinds, ", ")));
   plugin.asks = text(d.asks, "asks");
   check_asks(plugin.kind, plugin.asks);
   plugin.id = text(d.id, "id");

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include <lgabench/abstraction/prompt.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
@@ -28,6 +29,12 @@ std::string folder_hash(const std::string& folder) {
 std::string Cell::title() const {
   return fmt::format("{} {} {} {} n={} seed={}{}", method.name, scenario_id(), layout, engine, demonstrations,
                      training_seed, participant ? " participant=" + participant->id : "");
+}
+
+bool Cell::has_plugin_environment() const { return !contains(environment_ids(), environment); }
+
+std::string Cell::environment_in_build() const {
+  return has_plugin_environment() ? "environment " + environment : fmt::format("liblgabench_env_{}.so", environment);
 }
 
 bool Cell::perturbs() const {

@@ -62,6 +62,10 @@ struct Cell {
   bool smoke = false;
 
   std::string scenario_id() const { return scenario->at("id"); }
+  /// Whether its environment is a plugin's, not lgabench's own.
+  bool has_plugin_environment() const;
+  /// What the environment's file is called in a cell's "build".
+  std::string environment_in_build() const;
   /// Whether an arm of its scenario has a perturbation.
   bool perturbs() const;
   /// Ids of the plugins' axes that its arms have.

@@ -24,8 +24,8 @@ struct Regret {
   std::optional<Loss> regret;    // of the ceiling with as many of both, less this row; none where the run lacks it
   std::optional<Loss> to_bayes;  // likewise of Bayes with one Selection; of rows that select once
 };
-/// Of a run whose scenarios ask people in scenes, in the order of layout, engine, demonstrations and questions; rows
-/// with a failed cell, or with nothing to compare with, are left out.
+/// The rows of a run whose scenarios ask people in scenes, in the order of layout, engine, demonstrations and
+/// questions; rows with a failed cell, or with nothing to compare with, are left out.
 std::vector<Regret> regrets(const RunResults& run);
 Json to_json(const Regret& regret);
 

@@ -27,9 +27,27 @@ namespace {
 // A name or a message as tables, pages and terminals may show it: it comes from a plugin, or from somebody else's run.
 std::string shown(const JsonReader& text) { return one_line(text.string()); }
 
+// The failures of an environment that is a plugin's, and there; else none.
+std::set<std::string> words_of_plugin(const std::string& environment) {
+  if (contains(environment_ids(), environment)) return {};
+  const EnvironmentType* const type = environment_if_there(environment);
+  if (!type) return {};
+  std::set<std::string> words(type->failures().begin(), type->failures().end());
+  for (const TaskInfo& task : type->tasks())
+    if (task.most_steps > 1) words.insert(failure::goes_on);
+  return words;
+}
+
+bool is_word(const std::string& text) {
+  const auto in_word = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
+  return !text.empty() && text.size() <= 40 && std::all_of(text.begin(), text.end(), in_word);
+}
+
 void read_episodes(const fs::path& file, CellResult& cell) {
   std::map<std::string, std::map<int, Episode>> played;
-  const std::vector<std::string> words = failure_words();
+  const std::set<std::string> own = words_of_plugin(cell.environment);
+  const std::vector<std::string> words = failure_words(own);
+  const bool any_word = own.empty() && cell.configuration.has_plugin_environment();  // it is not there to ask
   int line = 0;
   for (const Json& json : parse_json_lines(read_file(file, Links::refused), file.string())) {
     const JsonReader reader(json, fmt::format("{}: line {}", file.string(), ++line));
@@ -40,7 +58,8 @@ void read_episodes(const fs::path& file, CellResult& cell) {
     reader.at("command").integer(0, static_cast<long long>(cell.commands.size()) - 1);
     if (e.told) reader.at("told").integer(0, static_cast<long long>(cell.commands.size()) - 1);
     reader.at("index").integer(0, cell.episodes_per_arm - 1);
-    if (!e.success() && !contains(words, e.failure))
+    if (any_word && !e.success() && !is_word(e.failure)) reader.at("failure").fail("a word");
+    if (!any_word && !e.success() && !contains(words, e.failure))
       reader.at("failure").fail(fmt::format("none, {}", fmt::join(words, ", ")));
     if (!e.attribution.empty() && cell.is_reference()) reader.at("attribution").fail("null for a reference row");
     if (!played[e.arm].emplace(e.index, e).second)

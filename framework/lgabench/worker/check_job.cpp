@@ -33,7 +33,9 @@ void check(const JsonReader& reader, const Messages& messages) {
   };
   const CheckReport report = job.perturbation ? on_perturbation()
                              : job.method     ? on_method()
-                                              : check_engine(job.engine, job.environment, phase);
+                             : job.checked_environment
+                                 ? check_environment(job.checked_environment->id, job.engine, phase)
+                                 : check_engine(job.engine, job.environment, phase);
   write_file(job.report, canonical(to_json(report)) + '\n');
 }
 

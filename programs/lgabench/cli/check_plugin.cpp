@@ -140,6 +140,7 @@ std::array<CheckProcess, 2> two_processes(const PluginInfo& plugin, const Plugin
   job.engine = engine;
   if (plugin.kind == "method") job.method = plugin;
   if (plugin.kind == "perturbation" || plugin.kind == "perceiver") job.perturbation = plugin;
+  if (plugin.kind == "environment") job.checked_environment = plugin;
   job.options = options_of(plugin, a.settings);
   job.limits = worker_limits(pool);
   job.environment = a.environment;
@@ -207,6 +208,7 @@ std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
 
 int check_plugin(const CheckPluginArguments& a) {
   if (const std::string missing = missing_plugin(a.file); !missing.empty()) throw InputError(missing);
+  if (!a.environment.empty()) find_environment(a.environment);
   CheckReport report;
   PluginInfo plugin;
   std::size_t printed = 0;
@@ -218,7 +220,7 @@ int check_plugin(const CheckPluginArguments& a) {
       warn_of_home(fs::absolute(plugin.file).parent_path());
     }
     if (!a.json)
-      to_stdout("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind == "engine" ? "an" : "a", plugin.kind);
+      to_stdout("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind.front() == 'e' ? "an" : "a", plugin.kind);
     printed = check(plugin, scan_plugins(plugin_directories()), a, report);
   } catch (const PluginError& e) {
     const bool in_options = std::string_view(e.what()).find(": options: ") != std::string_view::npos;
@@ -252,8 +254,7 @@ void add_check_plugin(CLI::App& app, int& exit) {
               required);
   verb.option("--python PROGRAM", a->python, "The interpreter for a plugin in Python", with_default);
   verb.option("--set OPTION=VALUE", a->settings, "An option of the plugin; can be repeated", repeatable);
-  verb.option("--environment ID", a->environment, "The environment to check the plugin in",
-              one_of("environment", environment_ids()));
+  verb.option("--environment ID", a->environment, "The environment to check the plugin in");
   verb.option("--timeout SECONDS", a->timeout_s, "Time limit of each of the two processes, in seconds", within(1, 1e6),
               with_default);
   verb.option("--memory GIB", a->memory_gib,

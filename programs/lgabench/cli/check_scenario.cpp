@@ -160,6 +160,7 @@ int check_scenario(const CheckScenarioArguments& a) {
   std::vector<std::string> arms{"train"};
   for (const Arm& arm : scenario.tests) arms.push_back(arm.id);
   std::vector<std::string> layouts = a.layouts;
+  for (const std::string& layout : layouts) layout_of(scenario, layout);
   if (layouts.empty() && suite) layouts = suite->design.layouts;
   if (layouts.empty()) {
     layouts = layouts_of(scenario);
@@ -197,8 +198,7 @@ void add_check_scenario(CLI::App& app, int& exit) {
   verb.option("scenario FILE", a->file, "The scenario's file, or its id", required);
   verb.option("--scenes N", a->scenes, "Scenes per arm and layout", CLI::Range(1, 100000), with_default);
   verb.option("--layout LAYOUT,...", a->layouts,
-              "Layouts of the task, separated by commas (default: those of --suite, else the task's first two)",
-              one_of("layout", installed_layouts()));
+              "Layouts of the task, separated by commas (default: those of --suite, else the task's first two)");
   verb.option("--suite SUITE", a->suite,
               "Check the scenario as this suite plays it, with its training scenes and arms");
   verb.option("--engine ENGINE", a->engine, "An engine, by plugin id (default: the one that suites use)");

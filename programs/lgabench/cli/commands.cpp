@@ -8,7 +8,6 @@ const char* const reference =
     "Environment\n"
     "  LGABENCH_CACHE            the folder of kept demonstrations (default: ~/.cache/lgabench)\n"
     "  LGABENCH_PLUGIN_PATH      directories of more plugins, separated by colons\n"
-    "  LGABENCH_ENVIRONMENT_PATH directories of more environments' libraries, separated by colons\n"
     "  LGABENCH_SCENARIO_PATH    directories of more scenarios, separated by colons\n"
     "  LGABENCH_DATA             scenarios, suites and answers to use instead of the installed ones\n"
     "  LGABENCH_ENCODER          the folder of the sentence encoder's weights\n"

@@ -54,7 +54,7 @@ void write(const DemosArguments& a) {
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
   const PluginInfo& engine = a.engine.empty() ? default_engine(catalogue) : catalogue.find("engine", a.engine);
   const auto environment = make_environment(scenario, load_engine(engine));
-  const std::string layout = a.layout.empty() ? layouts_of(scenario).front() : a.layout;
+  const std::string layout = layout_of(scenario, a.layout);
   std::vector<Scene> scenes;
   const std::vector<Selection> selections =
       a.selection.empty() ? std::vector<Selection>() : selections_of(a.selection, scenario);
@@ -104,8 +104,7 @@ void add_demos(CLI::App& app, int&) {
   verb.option("--selection FILE", a->selection,
               "Draw targets from a method's Selection instead, the selection.json of a cell");
   verb.option("--layout LAYOUT", a->layout,
-              "How objects are placed: one of `lgabench list layouts --of SCENARIO` (default: the first)",
-              one_of("layout", installed_layouts()));
+              "How objects are placed: one of `lgabench list layouts --of SCENARIO` (default: the first)");
   verb.option("--n N", a->n, "Number of demonstrations", CLI::Range(1, 1'000'000), with_default);
   verb.option("--seed N", a->seed, "Training seed", a_seed(), with_default);
   verb.option("--noisy N", a->noisy, "DART: number of noisy rollouts per demonstration", CLI::Range(0, 1000),

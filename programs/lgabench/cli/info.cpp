@@ -29,7 +29,7 @@ void print_info(const PerturbationAxis& axis) {
 }
 
 void print_info(const PluginInfo& plugin) {
-  to_stdout("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind == "engine" ? "an" : "a", plugin.kind);
+  to_stdout("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind.front() == 'e' ? "an" : "a", plugin.kind);
   to_stdout("  {}\n  file        {}\n  sha256      {}\n  built with  {}\n", plugin.summary, plugin.file.string(),
             plugin.sha256, plugin.fingerprint);
   if (!plugin.asks.empty())
@@ -175,7 +175,10 @@ Json things_named(const std::string& name, const Catalogue& catalogue, bool json
     found.back()["kind"] = "scenario";
   }
   if (fs::exists(data_directory() / "suites" / (name + ".json"))) add(load_suite(name));
-  if (contains(environment_ids(), name)) add(find_environment(name));
+  const bool of_plugin =
+      std::any_of(catalogue.plugins.begin(), catalogue.plugins.end(),
+                  [&name](const PluginInfo& one) { return one.kind == "environment" && one.id == name; });
+  if (of_plugin || contains(environment_ids(), name)) add(find_environment(name));
   for (const Json& row : reference_rows())
     if (row.at("id") == name) {
       if (!json) print_reference_row(row);

@@ -10,6 +10,7 @@
 #include <lgabench/cli/own_names.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/contains.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/filled.hpp>
@@ -84,8 +85,11 @@ void expect_free(const NewPluginArguments& a) {
     taken.insert(taken.end(), names_read().begin(), names_read().end());
     taken.emplace_back(Reading::simulator);
   }
+  if (kind == "environment")
+    for (const std::string& id : environment_ids()) taken.push_back(id);
   if (contains(taken, a.name))
-    throw InputError(fmt::format("new-plugin: expected another id than {}, which a {} that lgabench finds has", a.name,
+    throw InputError(fmt::format("new-plugin: expected another id than {}, which {} {} that lgabench finds has", a.name,
+                                 kind.front() == 'e' ? "an" : "a",
                                  kind == "perturbation" ? "perturbation axis" : kind));
   if (contains(cmake_targets, a.name))
     throw InputError(fmt::format("new-plugin: expected another id than {}, which CMake has a target of", a.name));
@@ -94,9 +98,9 @@ void expect_free(const NewPluginArguments& a) {
 void new_plugin(const NewPluginArguments& a) {
   expect_plain_name("new-plugin", a.name);
   expect_free(a);
-  if (a.language == "python" && a.kind == "engine")
-    throw InputError(
-        "new-plugin: --language python: expected a method, a perturbation or a perceiver, an engine is in C++");
+  if (a.language == "python" && (a.kind == "engine" || a.kind == "environment"))
+    throw InputError(fmt::format(
+        "new-plugin: --language python: expected a method, a perturbation or a perceiver, an {} is in C++", a.kind));
   if (!a.with.empty() && (a.kind != "method" || a.language == "python"))
     throw InputError("new-plugin: --with " + a.with + ": expected a method in C++");
   const fs::path directory = a.directory.empty() ? fs::path(a.name) : a.directory;
@@ -126,24 +130,31 @@ void new_plugin(const NewPluginArguments& a) {
     write((perceives ? "python_" + a.kind : "python") + ".README.md.in", "README.md");
     return;
   }
-  const auto write_example = [&](const std::string& example, const std::string& type) {
-    const std::string source = read_file(data_directory() / "starters" / example / (example + ".cpp"));
-    const fs::path to = directory / (a.name + ".cpp");
+  const auto write_example = [&](const std::string& example, const std::string& type,
+                                 const std::string& file = ".cpp") {
+    const std::string source = read_file(data_directory() / "starters" / example / (example + file));
+    const fs::path to = directory / (a.name + file);
     write_file(to, filled(source, {{'"' + example + '"', '"' + a.name + '"'},
+                                   {'"' + example + "_", '"' + a.name + "_"},
                                    {'"' + example + ": ", '"' + a.name + ": "},
                                    {"info " + example, "info " + a.name},
                                    {"set " + example, "set " + a.name},
                                    {type, class_name(a.name)}}));
     to_stdout("{}\n", to.string());
   };
+  if (a.kind == "environment")
+    for (const char* file : {"_red.json", "_blind.json", "_suite.json"}) write_example("reach2d", "Reach2d", file);
   if (a.kind == "engine")
     write_example("kinematic", "KinematicWorld");  // the smallest engine that fulfils the contract
+  else if (a.kind == "environment")
+    write_example("reach2d", "Reach2d");
   else if (a.with == "torch")
     write_example("own_network", "OwnNetwork");
   else
     write(a.kind + ".cpp.in", a.name + ".cpp");
   write(a.kind + ".README.md.in", "README.md");
-  write("CMakeLists." + (perceives ? "perceiving" : a.kind) + ".txt.in", "CMakeLists.txt");
+  const bool links_more = a.kind == "method" || a.kind == "engine";
+  write("CMakeLists." + (links_more ? a.kind : "plugin") + ".txt.in", "CMakeLists.txt");
   write("CMakePresets.json.in", "CMakePresets.json");
 }
 
@@ -153,9 +164,9 @@ void add_new_plugin(CLI::App& app, int& exit) {
   auto a = std::make_shared<NewPluginArguments>();
   Verb verb(app, "new-plugin", "Write a working project for a new plugin, for you to change");
   verb.option("name NAME", a->name, "The plugin's id: lower-case letters, digits, underscores", required);
-  verb.option("--kind method|engine|perturbation|perceiver|python", a->kind,
-              "method, engine, perturbation or perceiver; python: a method in Python",
-              one_of("kind", {"method", "engine", "perturbation", "perceiver", "python"}), with_default);
+  verb.option("--kind method|engine|perturbation|perceiver|environment|python", a->kind,
+              "method, engine, perturbation, perceiver or environment; python: a method in Python",
+              one_of("kind", {"method", "engine", "perturbation", "perceiver", "environment", "python"}), with_default);
   verb.option("--language c++|python", a->language, "c++, or python for a method, a perturbation or a perceiver",
               one_of("language", {"c++", "python"}), with_default);
   verb.option("--with torch|opencv", a->with,

@@ -92,6 +92,10 @@ Json reference_rows();
 /// The layouts that all of the scenarios have, in the order of the first one's. @pre there is one
 std::vector<std::string> common_layouts(const std::vector<Scenario>& scenarios);
 
+/// What --layout names, or the scenario's first layout where it names none. @throws InputError for one that the
+/// scenario has not.
+std::string layout_of(const Scenario& scenario, const std::string& word);
+
 /// A check for an option: one of those words.
 inline CLI::Validator one_of(std::string what, std::vector<std::string> known) {
   return CLI::Validator(
@@ -117,6 +121,10 @@ inline std::string missing_plugin(const std::string& word) {
   return fs::exists(file, not_there) ? "" : file + ": no such file or directory";
 }
 
+/// Adds the path to $LGABENCH_PLUGIN_PATH: workers that are asked for pictures, and scenarios that are read before
+/// plugins are, find environments there.
+void also_for_workers(const std::string& path);
+
 /// --plugin-path, as every verb has it.
 inline void add_plugin_path(Verb& verb, std::vector<fs::path>& paths,
                             const std::string& takes = "a directory or a .so file") {
@@ -126,7 +134,8 @@ inline void add_plugin_path(Verb& verb, std::vector<fs::path>& paths,
     return missing + (several ? "; for several, repeat --plugin-path" : "");
   };
   verb.option("--plugin-path PATH", paths, fmt::format("Also look for plugins here: {}; can be repeated", takes), there,
-              repeatable);
+              repeatable)
+      ->each(also_for_workers);
 }
 
 /// --jobs and --timeout, as every verb has them that computes cells of its own.

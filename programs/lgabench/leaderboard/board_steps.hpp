@@ -33,11 +33,11 @@ struct BoardSteps {
   const Played& labels() const { return played[1]; }
 };
 
-/// Of rows that place what they learned by a heat map, with equal options and shipped answers. None where one that is
-/// needed is not among them. Of the suite's main arm, or where the preset lacks it the first of the track. Labels are
-/// those of the rule that the track names, or counted ones where that row is not there. Of several rows with such
-/// options the one with the frozen answers (Track::answers) counts. `demonstrations`: in place of the suite's main
-/// number.
+/// The steps between rows that place what they learned by a heat map, with equal options and shipped answers. None
+/// where one that is needed is not among them. Of the suite's main arm, or where the preset lacks it the first of the
+/// track. Labels are those of the rule that the track names, or counted ones where that row is not there. Of several
+/// rows with such options the one with the frozen answers (Track::answers) counts. `demonstrations`: in place of the
+/// suite's main number.
 std::optional<BoardSteps> steps_of(const std::vector<Standing>& table, const Track& track = {},
                                    const std::optional<Undisputed>& undisputed = {},
                                    std::optional<int> demonstrations = {});

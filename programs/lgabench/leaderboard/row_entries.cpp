@@ -176,7 +176,7 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Catalogu
   Entry entry;
   entry.setting = installed.setting;
   entry.about = about;
-  entry.failures = failure_words();
+  entry.failures = failure_words();  // an entry's suite is one of lgabench's own
   entry.identity.row = first.method;
   entry.identity.row.name = first.method.own_name();
   entry.identity.answers = first.answers;

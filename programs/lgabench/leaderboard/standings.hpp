@@ -28,7 +28,7 @@ struct Standing {
   /// any object to that of the truth it closes there; none where one of those two is no row of the table.
   std::optional<double> in_track, gap_closed;
   int episodes = 0, failed_cells = 0;
-  std::optional<double> precision, recall;            // of its Selections, mean over commands and kinds of features
+  std::optional<double> precision, recall;  // of its Selections, mean over commands and kinds of features
   int cells_not_asked = 0;  // whose recorded answers are lists: nobody was asked the questions that they count
   double lm_queries = 0, lm_tokens = 0, learn_s = 0;  // of a cell that did not fail, on average
 };

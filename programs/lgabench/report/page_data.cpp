@@ -18,10 +18,10 @@ namespace {
 
 // Columns and rows of the picture where the action's places lie, to a tenth of a pixel; none for another environment's.
 Json places_of(const std::string& id, const Action& action) {
-  static const std::vector<std::string> installed = environment_ids();
   Json all = Json::array();
-  if (!contains(installed, id)) return all;
-  const EnvironmentType& environment = find_environment(id);
+  const EnvironmentType* const there = environment_if_there(id);
+  if (!there) return all;
+  const EnvironmentType& environment = *there;
   const ActionSpace& space = environment.action_space();
   if (action.size() != space.size()) return all;
   const double step = page_step(environment.picture_size());
@@ -31,6 +31,15 @@ Json places_of(const std::string& id, const Action& action) {
     all.push_back({tenths(at.x), tenths(at.y)});
   }
   return all;
+}
+
+std::set<std::string> failures_of(const RunResults& run) {
+  std::set<std::string> found;
+  for (const CellResult& cell : run.cells)
+    for (const auto& item : cell.episodes)
+      for (const Episode& episode : item.second)
+        if (!episode.success()) found.insert(episode.failure);
+  return found;
 }
 
 std::string title_of(const MethodStyles& styles, const Table& table, const Row& row) {
@@ -162,7 +171,7 @@ class PageData {
 
   const Material& material_;
   const Pictures& pictures_;
-  const std::vector<std::string> words_ = failure_words();
+  const std::vector<std::string> words_ = failure_words(failures_of(material_.run));
   std::map<Place, std::size_t> rows_;
   Numbered<std::vector<std::string>> scenes_;  // of an arm
   Numbered<Json> phis_;                        // what was selected

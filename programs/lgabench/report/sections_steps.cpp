@@ -34,9 +34,9 @@ Grid grid_of(const Material& material, const Table& table) {
           return Spans{Span::number("["), Span::number(signed_rate(of.low), where + "low"), Span::number(", "),
                        Span::number(signed_rate(of.high), where + "high"), Span::number("]")};
         };
-        row.cells[3] = Span::number(signed_rate(step.difference), own + "difference", Emphasis::strong);
-        row.cells[4] = interval(step.interval, own);
-        row.cells[5] = step.over_commands ? interval(*step.over_commands, own + "over_commands/")
+        row.cells[3] = Span::number(signed_rate(step.difference), step_place + "difference", Emphasis::strong);
+        row.cells[4] = interval(step.interval, step_place);
+        row.cells[5] = step.over_commands ? interval(*step.over_commands, step_place + "over_commands/")
                                           : Spans{statistics::signed_interval(step.over_commands)};
       }
       grid.rows.push_back(std::move(row));

@@ -200,7 +200,7 @@ Section failures(const Material& material) {
                   "Each scenario's episodes, by how they ended, with the most demonstrations");
   endings.column("episodes");
   endings.column("success");
-  const std::vector<std::string> all = failure_words();  // in the order of their colours
+  const std::vector<std::string> all = failure_words(used);  // in the order of their colours
   const auto kind = [&all](const std::string& word) {
     return fmt::format("f{}", (std::find(all.begin(), all.end(), word) - all.begin()) % failure_colours);
   };

@@ -1,6 +1,9 @@
 // summary.csv and episodes.csv.
 #include <fmt/format.h>
 
+#include <set>
+
+#include <lgabench/core/environments.hpp>
 #include <lgabench/document/writers.hpp>
 #include <lgabench/report/report.hpp>
 
@@ -21,7 +24,11 @@ std::string to_csv(const Summary& summary) {
   add("same_actions", "shift/same_actions");
   for (const char* member : {"inputs_seen", "n_error", "marks"}) add(member, member);
   for (const char* to : attributions) add(to, fmt::format("attribution/{}", to));
-  for (const std::string& word : failure_words()) add(word, "failures/" + word);
+  std::set<std::string> found;
+  for (const Table& table : summary.tables)
+    for (const Row& row : table.rows)
+      for (const auto& item : row.failures) found.insert(item.first);
+  for (const std::string& word : failure_words(found)) add(word, "failures/" + word);
 
   std::vector<std::string> names;
   for (const auto& column : columns) names.push_back(column.first);

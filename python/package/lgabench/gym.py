@@ -136,15 +136,16 @@ def _ended(scenario: Scenario, terminated: Any, truncated: Any) -> tuple[Any, An
     return (terminated | True, truncated & False) if scenario.most_steps == 1 else (terminated, truncated)
 
 
-def _with_done(scenario: Scenario, actions: Any) -> Any:
+def _with_done(scenario: Scenario, actions: Any) -> numpy.typing.NDArray[numpy.float32]:
     """The oracle's rows of numbers as an action_space() has them; a row without numbers says that nothing is left to do."""
     if not scenario.may_stop:
         return scenario.action_space.from_metres(actions)
     done = numpy.isnan(actions).any(-1) if actions.shape[-1] else numpy.ones(len(actions), bool)
-    own = numpy.zeros((len(actions), len(scenario.action_space.low)), numpy.float32)
+    rows = numpy.zeros((len(actions), len(scenario.action_space.low) + 1), numpy.float32)
+    rows[:, -1] = numpy.where(done, 1, -1)
     if not done.all():
-        own[~done] = scenario.action_space.from_metres(actions[~done])
-    return numpy.concatenate([own, numpy.where(done, 1, -1)[:, None]], -1).astype(numpy.float32)
+        rows[~done, :-1] = scenario.action_space.from_metres(actions[~done])
+    return rows
 
 
 class SceneEnv(gymnasium.Env[dict[str, Any], numpy.typing.NDArray[numpy.float32]]):
@@ -195,7 +196,8 @@ class SceneEnv(gymnasium.Env[dict[str, Any], numpy.typing.NDArray[numpy.float32]
 
     def expert_action(self) -> numpy.typing.NDArray[numpy.float32]:
         """The oracle's action, within [-1, 1]."""
-        return _with_done(self.scenario, self.environment.expert_action()[None])[0]
+        first: numpy.typing.NDArray[numpy.float32] = _with_done(self.scenario, self.environment.expert_action()[None])[0]
+        return first
 
     def render(self) -> Any:
         return None if self.render_mode is None or self._picture is None else self._picture.copy()
@@ -339,10 +341,10 @@ class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
     def _put(self, batch: Batch, at: list[int]) -> None:
         """Makes these the rows `at` of what is seen; arrays that were handed out stay as they are."""
         if len(at) < self.num_envs and self._batch is not None:
-            kept = Batch(*(array.copy() for array in self._batch))
-            for all_of_them, rows in zip(kept, batch):
-                all_of_them[at] = rows
-            batch = kept
+            kept = {name: array.copy() for name, array in self._batch._asdict().items()}
+            for name, rows in batch._asdict().items():
+                kept[name][at] = rows
+            batch = Batch(**kept)
         self._batch = batch
 
     def _arrays(self) -> dict[str, Any]:

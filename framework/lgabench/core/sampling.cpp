@@ -1,4 +1,4 @@
-#include <common/sampling.hpp>
+#include <lgabench/core/sampling.hpp>
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 
 #include <lgabench/core/error.hpp>
 
-namespace lgabench::common {
+namespace lgabench {
 
 Scene without_objects(const Scenario& scenario, const SceneRequest& request, int index) {
   const auto& split = request.split;
@@ -36,4 +36,4 @@ void permute_ids(std::vector<SceneObject>& objects, RandomStream random) {
   std::sort(objects.begin(), objects.end(), [](const auto& a, const auto& b) { return a.instance_id < b.instance_id; });
 }
 
-}  // namespace lgabench::common
+}  // namespace lgabench

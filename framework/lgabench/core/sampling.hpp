@@ -7,7 +7,7 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/random.hpp>
 
-namespace lgabench::common {
+namespace lgabench {
 
 /// Scene number `index` as the request has it, without objects and parameters; the arm's commands take turns.
 /// @throws InputError for a split or an arm that there is not, a training seed's own scenes outside of tests, an index
@@ -26,4 +26,4 @@ const std::string& any_of(const std::vector<std::string>& names, RandomStream& r
 /// Gives ids 1..n in random order and sorts the objects by them: neither reveals a role.
 void permute_ids(std::vector<SceneObject>& objects, RandomStream random);
 
-}  // namespace lgabench::common
+}  // namespace lgabench
