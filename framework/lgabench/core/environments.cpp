@@ -167,6 +167,7 @@ std::vector<std::string> failure_words(const std::set<std::string>& found) {
   return words;
 }
 
+// NOLINTBEGIN(performance-unnecessary-value-param): who overrides these changes the scene.
 Scene EnvironmentType::with_distractors(const Scenario&, Scene, int, bool, RandomStream) const {
   throw NothingToShow(fmt::format("environment {}: its scenes have no room for more distractors", id()));
 }
@@ -178,6 +179,7 @@ Scene EnvironmentType::resized(Scene, double) const {
 Scene EnvironmentType::with_larger_target(Scene, const std::vector<double>&) const {
   throw InputError(fmt::format("environment {}: its objects have one size each", id()));
 }
+// NOLINTEND(performance-unnecessary-value-param)
 
 const std::vector<StateNumber>& EnvironmentType::state_of(const TaskInfo&) const {
   static const std::vector<StateNumber> none;
