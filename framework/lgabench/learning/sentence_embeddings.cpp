@@ -6,6 +6,7 @@
 #include <boost/dll/runtime_symbol_info.hpp>
 
 #include <lgabench/abstraction/committed_embeddings.hpp>
+#include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/learning/sentence_encoder.hpp>
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <lgabench/core/action.hpp>
+#include <lgabench/document/document.hpp>
 #include <lgabench/statistics/engines.hpp>
 #include <lgabench/statistics/results.hpp>
 
