@@ -59,18 +59,16 @@ class LgaThenTaken : public CloningMethod {
   }
   // Each demonstration shows a mask of what it took.
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override {
-    std::map<std::string, TakenFeatures> by_command;
     std::vector<Demonstration> shown = demonstrations;
     for (Demonstration& one : shown) {
-      TakenFeatures one_taken;
-      one_taken.add(one, services.actions);
-      by_command[one.instruction.utterance].add(one, services.actions);
+      const TakenFeatures one_taken = taken_by({one}, services.actions);
       Selection& selection = one.instruction.selection;
       if (!one_taken.taken.none()) selection.target.sets = sets_of(one_taken.taken);
       if (selection.second && !one_taken.received.none())
         static_cast<FeatureSet&>(*selection.second) = with(one_taken.received, {}, space_);
     }
-    return std::make_unique<ChoosesWithin>(CloningMethod::learn(shown, services), std::move(by_command), space_);
+    return std::make_unique<ChoosesWithin>(CloningMethod::learn(shown, services),
+                                           taken_by_command(demonstrations, services.actions), space_);
   }
 
  private:

@@ -93,15 +93,10 @@ class OfTaken : public CloningMethod {
   }
   // Each demonstration shows a mask of what it took.
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override {
-    std::map<std::string, TakenFeatures> by_command;
     std::vector<Demonstration> shown = demonstrations;
-    for (Demonstration& one : shown) {
-      TakenFeatures one_taken;
-      one_taken.add(one, services.actions);
-      by_command[one.instruction.utterance].add(one, services.actions);
-      keep(one.instruction.selection, one_taken, space_);
-    }
-    return std::make_unique<ActsOnTheLikest>(CloningMethod::learn(shown, services), std::move(by_command),
+    for (Demonstration& one : shown) keep(one.instruction.selection, taken_by({one}, services.actions), space_);
+    return std::make_unique<ActsOnTheLikest>(CloningMethod::learn(shown, services),
+                                             taken_by_command(demonstrations, services.actions),
                                              taken_by(demonstrations, services.actions), revised_, space_, score_);
   }
 

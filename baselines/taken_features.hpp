@@ -1,6 +1,7 @@
 // What demonstrations took, by its features: what they tell of a command without its words.
 #pragma once
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -29,6 +30,14 @@ inline TakenFeatures taken_by(const std::vector<lgabench::Demonstration>& shown,
   TakenFeatures features;
   for (const lgabench::Demonstration& one : shown) features.add(one, actions);
   return features;
+}
+
+// What the demonstrations of each command took, by utterance.
+inline std::map<std::string, TakenFeatures> taken_by_command(const std::vector<lgabench::Demonstration>& shown,
+                                                             const lgabench::ActionSpace& actions) {
+  std::map<std::string, TakenFeatures> by_command;
+  for (const lgabench::Demonstration& one : shown) by_command[one.instruction.utterance].add(one, actions);
+  return by_command;
 }
 
 // Of the command's demonstrations.

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -161,22 +162,15 @@ void judge_scenes(const EnvironmentType& environment, const TaskInfo& task, cons
                "draw every random number from the stream that is given, and read no clock");
 }
 
-}  // namespace
-
-CheckReport check_environment(const std::string& id, const PluginInfo& engine, const CheckPhase& phase) {
+// Does the checks, which say what they begin with, and add to `all` what was seen in each episode, bit for bit. What
+// they throw is a finding on what they were doing.
+using Begins = std::function<void(const std::string& doing)>;
+using Checks = std::function<void(CheckReport& report, std::string& all, const Begins& begins)>;
+CheckReport report_of(const CheckPhase& phase, const Checks& checks) {
   CheckReport report;
-  const ProcessState at_first = ProcessState::now();
-  std::string all, doing = "its description";
+  std::string all, doing;
   try {
-    phase(doing, report);
-    const EnvironmentType& environment = find_environment(id);
-    judge_description(environment, report);
-    for (const TaskInfo& task : environment.tasks()) {
-      phase(doing = "scenes of " + task.example, report);
-      judge_scenes(environment, task, engine, report);
-      all += judge_task(task, engine, 0, of_environment, report);
-    }
-    judge_leftovers(report, [&at_first] { return ProcessState::now().beyond(at_first); });
+    checks(report, all, [&](const std::string& what) { phase(doing = what, report); });
   } catch (const PluginError&) {
     throw;
   } catch (const std::exception& e) {
@@ -186,26 +180,35 @@ CheckReport check_environment(const std::string& id, const PluginInfo& engine, c
   return report;
 }
 
-CheckReport check_engine(const PluginInfo& engine, const std::string& environment, const CheckPhase& phase) {
-  CheckReport report;
+}  // namespace
+
+CheckReport check_environment(const std::string& id, const PluginInfo& engine, const CheckPhase& phase) {
   const ProcessState at_first = ProcessState::now();
-  std::string all, doing = "a world of boxes";
-  try {
-    phase(doing, report);
+  return report_of(phase, [&](CheckReport& report, std::string& all, const Begins& begins) {
+    begins("its description");
+    const EnvironmentType& environment = find_environment(id);
+    judge_description(environment, report);
+    for (const TaskInfo& task : environment.tasks()) {
+      begins("scenes of " + task.example);
+      judge_scenes(environment, task, engine, report);
+      all += judge_task(task, engine, 0, of_environment, report);
+    }
+    judge_leftovers(report, [&at_first] { return ProcessState::now().beyond(at_first); });
+  });
+}
+
+CheckReport check_engine(const PluginInfo& engine, const std::string& environment, const CheckPhase& phase) {
+  const ProcessState at_first = ProcessState::now();
+  return report_of(phase, [&](CheckReport& report, std::string& all, const Begins& begins) {
+    begins("a world of boxes");
     use_alone(engine, report);
     judge_leftovers(report, [&at_first] { return ProcessState::now().beyond(at_first); });
     for (const TaskInfo& task : environment.empty() ? installed_tasks() : find_environment(environment).tasks()) {
-      phase(doing = "scenes of " + task.example, report);
+      begins("scenes of " + task.example);
       constexpr int most_lost = 1;  // an engine may grip amiss
       all += judge_task(task, engine, most_lost, of_engine, report);
     }
-  } catch (const PluginError&) {
-    throw;
-  } catch (const std::exception& e) {
-    report.problem(doing, e.what(), "this call must succeed: a run makes it too");
-  }
-  report.hashes = {{"episodes", sha256(all)}};
-  return report;
+  });
 }
 
 }  // namespace lgabench

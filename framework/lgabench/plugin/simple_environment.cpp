@@ -11,17 +11,15 @@
 namespace lgabench {
 namespace {
 
-using Thing = EnvironmentDescription::Thing;
-
-std::vector<Thing> those_of(const Meaning& meaning, const std::vector<Thing>& things, bool meant) {
-  std::vector<Thing> found;
-  std::copy_if(things.begin(), things.end(), std::back_inserter(found), [&meaning, meant](const Thing& thing) {
+std::vector<Named> those_of(const Meaning& meaning, const std::vector<Named>& things, bool meant) {
+  std::vector<Named> found;
+  std::copy_if(things.begin(), things.end(), std::back_inserter(found), [&meaning, meant](const Named& thing) {
     return meaning.belongs(thing.object_type, thing.texture) == meant;
   });
   return found;
 }
 
-SceneObject object_of(const Thing& thing, const Role& role) {
+SceneObject object_of(const Named& thing, const Role& role) {
   SceneObject object;
   object.object_type = thing.object_type;
   object.texture = thing.texture;
@@ -59,14 +57,14 @@ Scene SimpleEnvironment::sample(const Scenario& scenario, const SceneRequest& re
   const auto command = static_cast<std::size_t>(scene.command);
   const Meaning& truth = scenario.commands[command].truth.target;
   const bool as_asked = request.arm == "train" && scenario.as_method_asks && !request.selections.empty();
-  const std::vector<Thing> meant = those_of(as_asked ? request.selections[command].target : truth, about_.things, true);
+  const std::vector<Named> meant = those_of(as_asked ? request.selections[command].target : truth, about_.things, true);
   if (meant.empty())
     throw NothingToShow(fmt::format("scenario \"{}\": environment {} has nothing that is meant", scenario.id, id()));
   RandomStream target = stream("target");
   scene.objects.push_back(object_of(meant[target.below(static_cast<std::uint32_t>(meant.size()))], role::target));
-  std::vector<Thing> others = those_of(truth, about_.things, false);
+  std::vector<Named> others = those_of(truth, about_.things, false);
   for (const int i : stream("others").permutation(static_cast<int>(others.size()))) {
-    const Thing& other = others[static_cast<std::size_t>(i)];
+    const Named& other = others[static_cast<std::size_t>(i)];
     const SceneObject& chosen = scene.objects.front();
     if (static_cast<int>(scene.objects.size()) == about_.most_things) break;
     if (other.object_type != chosen.object_type || other.texture != chosen.texture)

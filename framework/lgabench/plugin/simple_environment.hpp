@@ -19,10 +19,7 @@ struct EnvironmentDescription {
   ActionSpace actions;
   std::vector<StateNumber> state = {};  // of Observation::state; none: it has no state
   PictureSize picture;
-  struct Thing {
-    std::string object_type, texture;
-  };
-  std::vector<Thing> things;  // that its scenes can show, each at most once in a scene
+  std::vector<Named> things;  // that its scenes can show, each at most once in a scene
   int most_things = 1;        // of a scene: its target, and others that are not meant
 };
 
