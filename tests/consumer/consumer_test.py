@@ -7,11 +7,13 @@ import json
 import os
 import pathlib
 import re
+import runpy
 import shutil
 import socket
 import subprocess
 import tempfile
 import unittest
+import unittest.mock
 
 BUILD, SOURCE = (pathlib.Path(os.environ[name]) for name in ("LGABENCH_BUILD", "LGABENCH_SOURCE"))
 FULL = os.environ.get("LGABENCH_FULL") == "1"
@@ -142,24 +144,21 @@ class NewPlugin(Consumer):
 
     @unittest.skipUnless(shutil.which("bwrap"), "bubblewrap is not installed")
     def test_a_strangers_source_is_built_confined(self):
-        """By the commands of docs/maintaining.md: no file of ours, variable or port is there, and only the plugin is taken."""
-        commands = (SOURCE / "docs/maintaining.md").read_text().split("--detach COMMIT\n")[1].split("\n\n")[0]
-        here = self.dir / "request/trusted"
-        here.mkdir(parents=True)
-        (here.parent / "installed").symlink_to(self.prefix)
+        """By results/accept: no file of ours, variable or port is there, and only the plugin is taken."""
+        here = self.dir / "request"
+        here.mkdir()
         self.lgabench("new-plugin", "stranger")
-        (self.dir / "stranger").rename(here.parent / "source")
+        (self.dir / "stranger").rename(here / "source")
         (self.dir / "key").write_text("our key")
-        with socket.create_server(("127.0.0.1", 0)) as server:
-            with open(here.parent / "source/CMakeLists.txt", "a") as file:
+        with socket.create_server(("127.0.0.1", 0)) as server, unittest.mock.patch.dict(os.environ, KEY="our key"):
+            with open(here / "source/CMakeLists.txt", "a") as file:
                 file.write(f"""execute_process(COMMAND bash -c "cat {self.dir}/key; echo $KEY; ls /home /root {SOURCE}; touch /source/x;
                     (echo > /dev/tcp/127.0.0.1/{server.getsockname()[1]}) && echo connected" OUTPUT_FILE /built/found)
                     execute_process(COMMAND ln -s /etc/passwd /built/taken.so)\n""")
-            done = subprocess.run(["bash", "-ec", commands], cwd=here, env={**os.environ, "KEY": "our key"}, capture_output=True, text=True)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual((here.parent / "built/found").read_text(), "\n")
-        self.assertEqual([file.name for file in (here.parent / "plugin").iterdir()], ["stranger.so"])
-        self.assertIn("any_texture", self.lgabench("info", "stranger", "--plugin-path", here.parent / "plugin").stdout)
+            runpy.run_path(str(SOURCE / "results/accept"))["build_confined"](here / "source", self.prefix, here / "built", here / "plugin")
+        self.assertEqual((here / "built/found").read_text(), "\n")
+        self.assertEqual([file.name for file in (here / "plugin").iterdir()], ["stranger.so"])
+        self.assertIn("any_texture", self.lgabench("info", "stranger", "--plugin-path", here / "plugin").stdout)
 
     @unittest.skipUnless(shutil.which("gdb"), "gdb is not installed")
     def test_stepping_through_a_method(self):
