@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Writes into the pages of docs/results, docs/results.md and docs/performance.md what results/measured says: runs that are no entries
-of the board, rules without language, tables.json, numbers read from reports, and speed.txt, the table of `lgabench-benchmarks --summary`.
+"""Writes into the pages of docs/results, docs/results.md, docs/performance.md and docs/relatives.md what results/measured says: runs
+that are no entries of the board, rules without language, tables.json, numbers read from reports, and speed.txt, the table of
+`lgabench-benchmarks --summary`.
 A page has a pair of markers <!-- measured:NAME --> and <!-- /measured --> for each table.
 
 Usage: docs/results/measured.py [OUTPUT_DIR]     # without it the pages themselves are written
 """
+import csv
 import json
 import pathlib
 import re
@@ -243,13 +245,51 @@ def read_off(name):
         said["columns"], [[shown(cell) for cell in row] for row in said["rows"]], words)
 
 
+def of_board(suite, name, demonstrations):
+    """A row's success over the suite, as the board's list of all rows has it."""
+    with open(ROOT / "results/leaderboard/leaderboard.csv") as file:
+        rows = [row for row in csv.DictReader(file) if (row["suite"], row["name"], row["demonstrations"], row["ranking"]) ==
+                (suite, name, str(demonstrations), "any policy")]
+    return float(rows[0]["success"])
+
+
+def moves():
+    """By how much a choice that a paper may leave out moves a row's success."""
+    q1 = "lgabench run q1 --preset leaderboard"
+    board = lambda method, how, n: of_board("q1", f"{method} {how}", n)
+    ran = lambda run, method, arm, n=5: success(run, method, arm, n)["success"]
+    heard = {row["method"]: row for row in RUNS["instruction"]["instruction"]}["lga"]
+    own, nonsense = heard["control"]["own"] / sum(heard["control"].values()), heard["levels"]["nonsense"]["success"]
+    regression, heat_map = "network=plain policy=regression", "network=text policy=heat_map"
+    missed = TABLES["selection_errors"]
+    lines = [
+        ("policy, LGA", "the paper's network", "heat map", board("LGA", regression, 50), board("LGA", heat_map, 50), q1),
+        ("policy, GCBC-SEG", "the paper's network", "heat map", board("GCBC-SEG", regression, 50), board("GCBC-SEG", heat_map, 50), q1),
+        ("demonstrations, true mask", "10", "50", board("Human", regression, 10), board("Human", regression, 50), q1),
+        ("order of batches, LGA", "drawn", "shuffled", ran("fidelity_paper_drawn", "lga", "test", 50), ran("fidelity_paper_shuffled", "lga", "test", 50),
+         RUNS["fidelity_paper_shuffled"]["command"]),
+        ("places, batches, picture: LGA", "`paper`", "`paper_text`", ran("fidelity_paper_drawn", "lga", "test", 50),
+         ran("fidelity_text_drawn", "lga", "test", 50), RUNS["fidelity_text_drawn"]["command"]),
+        ("what stands beside, labels", "one other", "four near misses", ran("unseen_seed_clutter_labels", "taken_features", "others_1"),
+         ran("unseen_seed_clutter_labels", "taken_features", "near_4"), RUNS["unseen_seed_clutter_labels"]["command"]),
+        ("words, LGA", "the command", "nonsense", own, nonsense, RUNS["instruction"]["command"]),
+        ("names, LGA", "the simulator's", "read from the picture", ran("pictures_language", "lga", "near_4"), ran("pictures_language", "lga+names=read", "near_4"),
+         RUNS["pictures_language"]["command"]),
+        ("answers, true mask", "all that belongs", "a tenth missing", missed["rows"][0][1][0], missed["rows"][1][1][0], missed["commands"][0].rstrip("\\ ") + " …"),
+        ("sensor noise, true mask, names read", "none", "level 4", ran("perturbations_read", "human+names=read", "control", 10),
+         ran("perturbations_read", "human+names=read", "sensor_noise_4", 10), RUNS["perturbations_read"]["command"].split(" --axes")[0] + " …")]
+    lines.sort(key=lambda line: -abs(line[4] - line[3]))
+    return table(["what, of which row", "from", "to", "before", "after", "moves", "command"],
+                 [[what, before, after, number(a), number(b), f"{b - a:+.2f}", f"`{command}`"] for what, before, after, a, b, command in lines], (0, 1, 2, 6))
+
+
 def rewritten(page):
     """The page's text with each marked table made anew."""
     tables = {"instruction": instruction, "fidelity": fidelity, "unseen_seed": unseen_seed, "persons": persons,
               **{f"persons_{run}": lambda run=run: persons(f"persons_{run}") for run in ("lists", "hints", "policy")}, "pictures": pictures,
               "reading": reading, "speed": lambda: (MEASURED / "speed.txt").read_text(), "perturbations_read": perturbations_read,
               "rivals": lambda: rivals(page.stem),
-              "leaks": lambda: leaks(page.stem)}
+              "leaks": lambda: leaks(page.stem), "moves": moves}
     made = lambda name: tables[name]() if name in tables else read_off(name)
     return re.sub(r"(<!-- measured:(\w+) -->\n).*?(<!-- /measured -->)", lambda found: f"{found[1]}\n{made(found[2])}\n{found[3]}",
                   page.read_text(), flags=re.S)
@@ -257,7 +297,7 @@ def rewritten(page):
 
 def main():
     out = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else None
-    for page in [PAGES.parent / "results.md", PAGES.parent / "performance.md", *sorted(PAGES.glob("*.md"))]:
+    for page in [PAGES.parent / "results.md", PAGES.parent / "performance.md", PAGES.parent / "relatives.md", *sorted(PAGES.glob("*.md"))]:
         if "<!-- measured:" in page.read_text():
             (out / page.name if out else page).write_text(rewritten(page))
 

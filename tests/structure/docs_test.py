@@ -94,7 +94,7 @@ class Pages(unittest.TestCase):
             written = {page.name: page.read_text() for page in pathlib.Path(made).iterdir()}
         self.assertEqual(sum("| Bayes over types" in page for page in written.values()), 6, "a suite of the abstraction track each")
         for name, text in written.items():
-            page = SOURCE / "docs" / name if name in ("results.md", "performance.md") else SOURCE / "docs/results" / name
+            page = SOURCE / "docs" / name if name in ("results.md", "performance.md", "relatives.md") else SOURCE / "docs/results" / name
             self.assertEqual(page.read_text(), text, "docs/results/measured.py writes it")
         kept = {file.stem for file in (SOURCE / "results/measured/runs").glob("*.json")}
         shown = "".join(written.values())
