@@ -142,6 +142,10 @@ class Pages(unittest.TestCase):
         self.assertEqual([file.name for file in pictures if file.stat().st_size > 40000], [])
         self.assertEqual({file.name for file in pictures}, set(re.findall(r"\(pictures/suites/(.*?)\)", page)))
 
+    def test_the_documents_have_no_more_words_than_they_may(self):
+        counted = subprocess.run([SOURCE / "docs/count"], capture_output=True, text=True)
+        self.assertEqual(counted.returncode, 0, counted.stdout + counted.stderr)
+
     def test_maintainers_read_one_short_page(self):
         page = (SOURCE / "docs/maintaining.md").read_text()
         self.assertLessEqual(len(page.split()), 650)
