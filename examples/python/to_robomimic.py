@@ -4,15 +4,16 @@
     python to_robomimic.py heart.hdf5 trained            # from the picture
     python to_robomimic.py heart.hdf5 trained masked     # the same, with all painted out but what the command means
 
-robomimic could read the file as it is. This script trains on a copy, whose actions are scaled to [-1, 1], since robomimic's
-network ends in tanh, and whose pictures are half as high and wide, to train on a CPU. An episode is one action, hence sequences
-of 1.
+robomimic could read the file as it is. This script trains on a copy, whose actions are those of the Gymnasium environment, since
+robomimic's network ends in tanh, and whose pictures are half as high and wide, to train on a CPU. The network acts on what it sees
+at a step alone, hence sequences of 1; recovery steps, which lie behind an episode's end, are such sequences too.
 """
 import pathlib
 import shutil
 import sys
 
 import h5py
+import numpy
 import torch
 from robomimic.config import config_factory
 from robomimic.scripts.train import train
@@ -38,19 +39,21 @@ def true_selections(scenario):
 
 
 def prepare(demonstrations, file, to, selections):
-    """Writes a copy whose actions are within [-1, 1], and whose pictures are those that the network sees."""
+    """Writes a copy whose actions are those of the Gymnasium environment, and whose pictures are those that the network sees."""
     shutil.copyfile(file, to)
     with h5py.File(to, "r+") as copy:
         for number, one in enumerate(demonstrations):
             demo = copy[f"data/demo_{number}"]
-            demo["actions"][...] = demonstrations.action_space.from_metres(demo["actions"][()])
-            selection = selections.get(one.instruction.utterance)
-            del demo["obs/rgb"], demo["next_obs/rgb"]
-            demo["obs/rgb"] = demo["next_obs/rgb"] = [shown(step.observation, selection) for step in one.steps]
+            steps, selection = [*one.steps, *one.recovery], selections.get(one.instruction.utterance)
+            del demo["actions"], demo["obs/rgb"], demo["next_obs/rgb"]  # cloning reads no next_obs, but the file must have it
+            demo["actions"] = demonstrations.actions(steps)
+            demo["obs/rgb"] = demo["next_obs/rgb"] = [shown(step.observation, selection) for step in steps]
 
 
 def clone(file, folder, epochs=200):
-    """Trains, and returns the checkpoint's file."""
+    """Trains, from the state too where the file has one, and returns the checkpoint's file."""
+    with h5py.File(file) as copy:
+        has_state = "state" in copy["data/demo_0/obs"]
     folder = pathlib.Path(folder).resolve()  # a relative one would lie among robomimic's own files
     config = config_factory("bc")
     with config.values_unlocked():
@@ -62,7 +65,7 @@ def clone(file, folder, epochs=200):
         config.experiment.rollout.enabled = False
         config.experiment.save.every_n_epochs = epochs
         config.experiment.epoch_every_n_steps = None  # a pass over the data
-        config.observation.modalities.obs.low_dim = []
+        config.observation.modalities.obs.low_dim = ["state"] * has_state
         config.observation.modalities.obs.rgb = ["rgb"]
         config.observation.encoder.rgb.core_kwargs.backbone_class = "ShallowConv"  # ResNet18 wants a GPU
         config.observation.encoder.rgb.core_kwargs.pool_class = "SpatialSoftmax"
@@ -77,10 +80,15 @@ def play(checkpoint, demonstrations, selections, episodes=100):
 
     def act(observation, utterance):
         picture = shown(observation, selections.get(utterance))
-        policy.start_episode()
-        return demonstrations.action_space.to_metres(policy({"rgb": obs_utils.process_obs(picture, obs_modality="rgb")}))
+        seen = {"rgb": obs_utils.process_obs(picture, obs_modality="rgb")}
+        if len(observation.state):
+            seen["state"] = observation.state.astype(numpy.float32)
+        action = policy(seen)
+        if demonstrations.may_stop and action[-1] > 0:
+            return []
+        return demonstrations.action_space.to_metres(action[:len(demonstrations.action_space.names)])
 
-    return lgabench.evaluate(act, demonstrations.scenario, episodes=episodes, layout=demonstrations.layout)
+    return lgabench.evaluate(act, demonstrations.scenario, episodes=episodes, layout=demonstrations.layout, reset=policy.start_episode)
 
 
 def main(file, folder, inputs="picture", epochs=200):

@@ -1,6 +1,7 @@
 """Runs and demonstrations in Python, against what the programs and the scenes say."""
 import csv
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -16,6 +17,7 @@ import lgabench
 from lgabench import data
 from scenes_test import ENGINE
 
+FOUND = "LGABENCH_PLUGIN_PATH", "LGABENCH_SCENARIO_PATH"
 PROGRAM = pathlib.Path(lgabench.__file__).parent / "_install/bin/lgabench"
 
 
@@ -26,7 +28,8 @@ class Case(unittest.TestCase):
 
     def call(self, *words):
         done = subprocess.run([PROGRAM, *map(str, words)], cwd=self.dir, capture_output=True, text=True, timeout=300,
-                              env={"PATH": "/usr/bin:/bin", "HOME": str(self.dir), "LGABENCH_CACHE": str(self.dir / "cache")})
+                              env={"PATH": "/usr/bin:/bin", "HOME": str(self.dir), "LGABENCH_CACHE": str(self.dir / "cache"),
+                                   **{name: value for name, value in os.environ.items() if name in FOUND}})
         self.assertEqual(done.returncode, 0, done.stderr[-3000:])
         return done
 

@@ -8,14 +8,17 @@ import subprocess
 import sys
 import unittest
 
+SOURCE, BUILD = pathlib.Path(__file__).parents[2], pathlib.Path(os.environ["LGABENCH_BUILD"])
+os.environ.update({"LGABENCH_PLUGIN_PATH": str(BUILD / "tests/plugins/examples"),
+                   "LGABENCH_SCENARIO_PATH": str(SOURCE / "examples/reach2d")})
+
+import h5py
 import numpy
 
 import lgabench
 from data_test import Case
 from lgabench.data import load_demonstrations
 from scenes_test import ENGINE, FULL
-
-SOURCE = pathlib.Path(__file__).parents[2]
 
 
 def code_of(page):
@@ -59,56 +62,97 @@ def installed(*packages):
 
 
 class Examples(Case):
+    """On episodes of one step and of several, the latter with a state and recovery steps."""
+
     def setUp(self):
         super().setUp()
         sys.path.insert(0, str(SOURCE / "examples/python"))
-        self.call("demos", "heart", "--engine", ENGINE, "--layout", "cells", "--n", 12, "--out", "heart.hdf5")
-        self.file = self.dir / "heart.hdf5"
+        self.files = {}
+        for scenario, words in ("heart", ("--layout", "cells")), ("reach2d_red", ("--noisy", 1)):
+            self.files[scenario] = self.dir / (scenario + ".hdf5")
+            self.call("demos", scenario, "--engine", ENGINE, *words, "--n", 12, "--out", self.files[scenario])
 
     @unittest.skipUnless(installed("lerobot"), "not installed: lerobot, or no LGABENCH_FULL")
     def test_lerobot_reads_what_its_writer_wrote(self):
         import to_lerobot
         from lerobot.datasets.lerobot_dataset import LeRobotDataset
-        to_lerobot.convert(self.file, self.dir / "written")
-        read = LeRobotDataset("lgabench/heart", root=self.dir / "written")
-        self.assertEqual(read.num_episodes, 12)
-        shown = load_demonstrations(self.file)
-        numpy.testing.assert_allclose(read[0]["action"], shown.action_space.from_metres(shown[0].steps[0].label), atol=1e-6)
-        self.assertEqual(read[0]["task"], shown[0].instruction.utterance)
+        for scenario, file in self.files.items():
+            to_lerobot.convert(file, self.dir / scenario)
+            read, shown = LeRobotDataset("lgabench/" + scenario, root=self.dir / scenario), load_demonstrations(file)
+            self.assertEqual(read.num_episodes, 12)
+            steps = [step for one in shown for step in one.steps]
+            self.assertEqual(len(read), len(steps))
+            self.assertEqual([bool(one["next.done"]) for one in read], [step is one.steps[-1] for one in shown for step in one.steps])
+            for one, step, action in zip(read, steps, shown.actions(steps)):
+                numpy.testing.assert_array_equal(one["action"], action)
+                numpy.testing.assert_allclose(one["observation.state"], [*step.observation.state] or [0, 0], atol=1e-6)
+            numpy.testing.assert_array_equal(numpy.rint(255 * read[len(read) - 1]["observation.images.rgb"].numpy()).transpose(1, 2, 0),
+                                             steps[-1].observation.rgb)
+            self.assertEqual(read[0]["task"], shown[0].instruction.utterance)
 
     @unittest.skipUnless(installed("lerobot"), "not installed: lerobot, or no LGABENCH_FULL")
     def test_lerobots_rollout_counts_the_oracles_successes(self):
         import to_lerobot
         import torch
         from lerobot.scripts.lerobot_eval import rollout
-        scenes = to_lerobot.environments("lgabench/heart-v1", 4, split="test")
 
         class Acts(torch.nn.Module):
-            def __init__(self, act):
+            def __init__(self, scenes, act):
                 super().__init__()
-                self.act = act
+                self.scenes, self.act = scenes, act
 
             def reset(self):
                 pass
 
             def select_action(self, observation):
-                assert observation["observation.image"].shape == (4, 3, 128, 256) and len(observation["task"]) == 4
-                return torch.stack([torch.from_numpy(self.act(env.unwrapped)) for env in scenes.envs])
+                assert len(observation["task"]) == 4
+                return torch.stack([torch.from_numpy(self.act(env.unwrapped)) for env in self.scenes.envs])
 
-        def success(act):
+        def success(scenario, act):
+            scenes = to_lerobot.environments(f"lgabench/{scenario}-v1", 4, split="test")
             as_it_is = [lambda values: values] * 4
-            return rollout(scenes, Acts(act), *as_it_is, seeds=[0, 1, 2, 3])["success"].float().mean().item()
+            played = rollout(scenes, Acts(scenes, act), *as_it_is, seeds=[0, 1, 2, 3])
+            first = played["done"].int().argmax(1)  # where each episode ends
+            return played["success"][torch.arange(4), first].float().mean().item()
 
-        self.assertEqual(success(lambda env: env.expert_action()), 1)
-        self.assertEqual(success(lambda env: numpy.zeros(env.action_space.shape, numpy.float32)), 0)
+        for scenario in self.files:
+            self.assertEqual(success(scenario, lambda env: env.expert_action()), 1)
+            self.assertEqual(success(scenario, lambda env: numpy.zeros(env.action_space.shape, numpy.float32)), 0)
 
     @unittest.skipUnless(installed("robomimic", "torch"), "not installed: robomimic, or no LGABENCH_FULL")
     def test_robomimic_trains(self):
         import to_robomimic
-        result = to_robomimic.main(str(self.file), str(self.dir / "trained"), "masked", epochs=2)
-        self.assertEqual(result.episodes, 100)
-        (first, last), = [re.findall(r'"Loss": ([0-9.]+)', log.read_text()) for log in self.dir.rglob("log.txt")]
-        self.assertLess(float(last), float(first))  # a batch larger than the file would train nothing
+        for scenario, file in self.files.items():
+            folder = self.dir / (scenario + "_trained")
+            result = to_robomimic.main(str(file), str(folder), "masked", epochs=2)
+            self.assertEqual(result.episodes, 100)
+            (first, last), = [re.findall(r'"Loss": ([0-9.]+)', log.read_text()) for log in folder.rglob("log.txt")]
+            self.assertLess(float(last), float(first))  # a batch larger than the file would train nothing
+
+    @unittest.skipUnless(importlib.util.find_spec("minari"), "not installed: minari")
+    def test_minari_loads_what_its_writer_wrote(self):
+        os.environ["MINARI_DATASETS_PATH"] = str(self.dir)
+        import minari
+        import to_minari
+        for scenario, file in self.files.items():
+            to_minari.convert(file, f"lgabench/{scenario}/oracle-v0")
+            read, shown = minari.load_dataset(f"lgabench/{scenario}/oracle-v0"), load_demonstrations(file)
+            self.assertEqual(read.total_episodes, 12)
+            self.assertEqual(read.total_steps, sum(len(one.steps) for one in shown))
+            with h5py.File(file) as opened:
+                ends = [opened[f"data/demo_{number}/next_obs/rgb"][len(one.steps) - 1] for number, one in enumerate(shown)]
+            for episode, one, end in zip(read, shown, ends):
+                numpy.testing.assert_array_equal(episode.actions, shown.actions(one.steps))
+                numpy.testing.assert_array_equal(episode.observations["rgb"][:-1], [step.observation.rgb for step in one.steps])
+                if scenario != "heart":
+                    numpy.testing.assert_array_equal(episode.observations["state"][:-1], [step.observation.state for step in one.steps])
+                numpy.testing.assert_array_equal(episode.observations["rgb"][-1], end)
+                self.assertEqual(episode.terminations.tolist(), [False] * (len(one.steps) - 1) + [True])
+                self.assertEqual(episode.rewards[-1], 1)
+                self.assertEqual(set(episode.observations["instruction"]), {one.instruction.utterance})
+            env = read.recover_environment()
+            self.assertEqual(env.unwrapped.scenario.id, scenario)
+            self.assertTrue(env.action_space.contains(read[0].actions[0]))
 
 
 if __name__ == "__main__":

@@ -9,11 +9,14 @@ os.environ.update({"LGABENCH_PLUGIN_PATH": str(BUILD / "tests/plugins/examples")
                    "LGABENCH_SCENARIO_PATH": str(ROOT / "examples/reach2d")})
 
 import gymnasium
+import h5py
 import numpy
 from gymnasium.utils.env_checker import check_env
 
 import lgabench
+from lgabench.data import load_demonstrations
 from lgabench_method import testing
+from data_test import Case
 from scenes_test import ENGINE
 
 
@@ -25,7 +28,7 @@ def make_vec(n, **arguments):
     return gymnasium.make_vec("lgabench/reach2d_red-v1", n, engine=ENGINE, split="test", **arguments).unwrapped
 
 
-class Steps(unittest.TestCase):
+class Steps(Case):
     def test_the_checker_has_nothing_to_say(self):
         with warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -81,6 +84,37 @@ class Steps(unittest.TestCase):
                         else:
                             begins[i] = True
             self.assertGreater(ended, 6)
+
+    def test_a_file_has_what_the_gymnasium_environment_plays(self):
+        self.call("demos", "reach2d_red", "--engine", ENGINE, "--n", 4, "--noisy", 2, "--out", "d.hdf5")
+        shown = load_demonstrations(self.dir / "d.hdf5")
+        env = make().unwrapped
+        for number, one in enumerate(shown):
+            seen, _ = env.reset(options={"split": "train", "index": number})
+            self.assertTrue(2 <= len(one.steps) <= 20 and one.recovery)
+            for step, action in zip(one.steps, shown.actions(one.steps)):
+                numpy.testing.assert_allclose(step.observation.state, seen["state"], atol=1e-5)
+                seen, _, over, _, info = env.step(action)
+                self.assertEqual(over, step is one.steps[-1])
+            self.assertTrue(info["is_success"])
+
+    def test_nothing_left_to_do_is_a_number_of_an_action(self):
+        self.call("demos", "reach2d_red", "--engine", ENGINE, "--n", 2, "--out", "d.hdf5")
+        before = load_demonstrations(self.dir / "d.hdf5")
+        self.assertEqual(before.actions(before[0].steps).shape, (len(before[0].steps), 2))
+        with h5py.File(self.dir / "d.hdf5", "r+") as file:
+            demo = file["data/demo_0"]
+            demo["stops"] = numpy.arange(len(demo["actions"])) == len(demo["actions"]) - 1
+        shown = load_demonstrations(self.dir / "d.hdf5")
+        self.assertTrue(shown.may_stop)
+        self.assertEqual(shown[0].steps[-1].label.shape, (0,))
+        for one, other in zip(shown, before):
+            rows, stops = shown.actions(one.steps), [not len(step.label) for step in one.steps]
+            self.assertEqual(rows[:, 2].tolist(), [1 if stop else -1 for stop in stops])
+            numpy.testing.assert_array_equal(rows[:, :2], numpy.where(numpy.array(stops)[:, None], 0, before.actions(other.steps)))
+        shown.action_space = None
+        with self.assertRaisesRegex(ValueError, "the file names no action space"):
+            shown.actions(shown[0].steps)
 
     def test_methods_get_trajectories_and_states(self):
         for one in testing.demonstrations("reach2d_red", 3, engine=ENGINE):

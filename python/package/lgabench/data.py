@@ -9,9 +9,10 @@ import re
 import stat
 import warnings
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Iterator, Mapping, Union
+from typing import TYPE_CHECKING, Any, Iterator, Mapping, Sequence, Union
 
 import numpy
+import numpy.typing
 
 from lgabench.scenes import ActionSpace
 import lgabench_method
@@ -121,6 +122,24 @@ class Demonstrations(list[Demonstration]):
     split: str = ""
     seed: Union[int, None] = None
     action_space: Union[ActionSpace, None] = None
+
+    @property
+    def may_stop(self) -> bool:
+        """Whether a step says that nothing is left to do."""
+        return any(not len(step.label) for one in self for step in (*one.steps, *one.recovery))
+
+    def actions(self, steps: Sequence[Step]) -> numpy.typing.NDArray[numpy.float32]:
+        """Labels as the Gymnasium environment takes them, a row for each step: within [-1, 1], and with `may_stop` one number
+        more, which is 1 where nothing is left to do and else -1. A file of versions before 0.3 has no action space: ValueError."""
+        if self.action_space is None:
+            raise ValueError("actions: the file names no action space: it is of a version before 0.3")
+        own = len(self.action_space.names)
+        rows = numpy.zeros((len(steps), own + self.may_stop), numpy.float32)
+        for row, step in zip(rows, steps):
+            if len(step.label):
+                row[:own] = self.action_space.from_metres(step.label)
+            row[own:] = -1 if len(step.label) else 1
+        return rows
 
 
 def load_demonstrations(file: Path) -> Demonstrations:
