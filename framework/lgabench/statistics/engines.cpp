@@ -16,6 +16,25 @@ auto place(const CellResult& c) {
   return std::tuple(c.scenario, c.kind, c.method, c.participant, c.demonstrations, c.training_seed);
 }
 
+bool has_several_steps(const CellResult& cell) {
+  for (const auto& [arm, episodes] : cell.episodes)
+    for (const Episode& one : episodes)
+      if (!one.then.empty() || one.done) return true;
+  return false;
+}
+
+// Scenes that both played.
+int same_scenes(const CellResult& a, const CellResult& b) {
+  int count = 0;
+  for (const auto& [arm, first] : a.episodes) {
+    const auto found = b.episodes.find(arm);
+    if (found == b.episodes.end()) continue;
+    for (std::size_t i = 0; i < std::min(first.size(), found->second.size()); ++i)
+      count += first[i].scene == found->second[i].scene;
+  }
+  return count;
+}
+
 // Scenes and actions that were counted already: methods that select alike act alike.
 using Seen = std::set<std::pair<std::string, std::vector<double>>>;
 
@@ -27,7 +46,6 @@ void pair_cells(const CellResult& a, const CellResult& b, EngineAgreement& out, 
     const std::vector<Episode>&first = a.episodes.at(arm), &second = found->second;
     for (std::size_t i = 0; i < std::min(first.size(), second.size()); ++i) {
       if (first[i].scene != second[i].scene || (first[i].action.empty() && second[i].action.empty())) continue;
-      if (!first[i].then.empty() || !second[i].then.empty()) continue;  // no one action decides such an episode
       if (!same_action(first[i], second[i])) {
         ++row.other_actions;
         continue;
@@ -42,7 +60,7 @@ void pair_cells(const CellResult& a, const CellResult& b, EngineAgreement& out, 
 
 EngineAgreement compare(const RunResults& run, const std::string& layout, const std::string& first,
                         const std::string& second) {
-  EngineAgreement out{layout, first, second, {}, {}};
+  EngineAgreement out{layout, first, second, {}, {}, 0};
   std::map<decltype(place(run.cells.front())), const CellResult*> others;
   for (const CellResult& cell : run.cells)
     if (!cell.failed && cell.layout == layout && cell.engine == second) others[place(cell)] = &cell;
@@ -54,6 +72,10 @@ EngineAgreement compare(const RunResults& run, const std::string& layout, const 
     if (cell.failed || cell.layout != layout || cell.engine != first) continue;
     const auto other = others.find(place(cell));
     if (other == others.end()) continue;
+    if (has_several_steps(cell) || has_several_steps(*other->second)) {
+      out.several_steps += same_scenes(cell, *other->second);
+      continue;
+    }
     AgreementRow& row = rows[{cell.is_reference(), display_rank(cell.method), cell.method}];
     row.method = cell.method;
     pair_cells(cell, *other->second, out, row, all, seen);
@@ -78,7 +100,7 @@ std::vector<EngineAgreement> engine_agreement(const RunResults& run) {
     for (std::size_t i = 0; i < names.size(); ++i)
       for (std::size_t k = i + 1; k < names.size(); ++k) {
         EngineAgreement one = compare(run, layout, names[i], names[k]);
-        if (!one.rows.empty()) all.push_back(std::move(one));
+        if (!one.rows.empty() || one.several_steps > 0) all.push_back(std::move(one));
       }
   return all;
 }
@@ -109,6 +131,7 @@ Json to_json(const std::vector<EngineAgreement>& agreements) {
                            {"failure_second", d.failure_second}});
     all.push_back(
         {{"layout", a.layout}, {"first", a.first}, {"second", a.second}, {"rows", rows}, {"disagreements", differing}});
+    if (a.several_steps > 0) all.back()["several_steps"] = a.several_steps;
   }
   return all;
 }

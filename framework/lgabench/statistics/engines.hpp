@@ -29,6 +29,8 @@ struct EngineAgreement {
   std::string layout, first, second;
   std::vector<AgreementRow> rows;  // in the order of tables; all of them last, where an action counts once a scene
   std::vector<Disagreement> disagreements;  // likewise once
+  int several_steps = 0;  // episodes of scenes that both played, of several steps: no one action decides these, and no
+                          // row has them
 };
 
 /// Every pair of engines that share a layout; empty for a run on one engine. Pairs cells by scenario, row,

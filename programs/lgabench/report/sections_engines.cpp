@@ -38,6 +38,12 @@ Grid agreement_grid(const Material& material, const EngineAgreement& a, const st
   return grid;
 }
 
+Paragraph not_counted(const EngineAgreement& a, const std::string& place) {
+  return {{fmt::format("{} and {}, layout {}: not counted are ", a.first, a.second, a.layout),
+           Span::number(fmt::format("{}", a.several_steps), place),
+           " episodes of tasks of several steps: no one action decides such an episode."}};
+}
+
 std::string place_text(const Disagreement& d) {
   return fmt::format("{}, {}, {} demonstrations, training seed {}, arm {}, scene {}", d.cell->scenario,
                      display_name(d.cell->method), d.cell->demonstrations, d.cell->training_seed, d.arm, d.index);
@@ -72,6 +78,9 @@ Section engines(const Material& material) {
                  "engine showed."}});
   for (std::size_t i = 0; i < material.agreements.size(); ++i) {
     const EngineAgreement& a = material.agreements[i];
+    if (a.several_steps > 0)
+      section.add(everywhere, not_counted(a, fmt::format("/engine_agreement/{}/several_steps", i)));
+    if (a.rows.empty()) continue;
     section.add(everywhere, agreement_grid(material, a, fmt::format("/engine_agreement/{}", i)), "",
                 fmt::format("{} and {}, layout {}", a.first, a.second, a.layout));
     if (a.disagreements.empty()) continue;

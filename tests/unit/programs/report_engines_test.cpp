@@ -66,6 +66,29 @@ TEST(Engines, OtherScenesAreNotCompared) {
   EXPECT_EQ(statistics::engine_agreement(results)[0].rows[0].same.episodes, 0);
 }
 
+TEST(Engines, EpisodesOfSeveralStepsAreCountedOutAndSaid) {
+  FabricatedRun run;
+  FabricatedRun::Spec steps{"lga", 15};
+  steps.arms = {{"test", 15, {0}, .5}};
+  steps.arms.front().steps = 3;
+  run.add(on("mujoco", steps));
+  run.add(on("bullet", steps));
+  run.save();
+  const std::string said = "bullet and mujoco, layout cells: not counted are 20 episodes of tasks of several steps";
+  EXPECT_NE(table_text(run.path).find(said), std::string::npos) << table_text(run.path);
+  const Json alone = read_json(run.path / "summary.json").at("engine_agreement").at(0);
+  EXPECT_EQ(alone.at("several_steps"), 20);
+  EXPECT_TRUE(alone.at("rows").empty());
+  // Beside a scenario of one step, whose rows have their own episodes alone.
+  run.add(on("mujoco", {"lga", 15, "star"}));
+  run.add(on("bullet", {"lga", 15, "star"}));
+  run.save();
+  const auto agreement = statistics::engine_agreement(statistics::read_run(run.path)).at(0);
+  EXPECT_EQ(agreement.several_steps, 20);
+  EXPECT_EQ(agreement.rows.at(0).same.episodes, 20);
+  EXPECT_TRUE(agreement.disagreements.empty());
+}
+
 TEST(Engines, OneHasNoAgreement) {
   FabricatedRun run;
   run.add({"lga", 15});

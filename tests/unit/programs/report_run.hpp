@@ -42,6 +42,7 @@ class FabricatedRun : public TemporaryDirectory {
     Json perturbation{};              // as in a scenario; null: none
     int unchanged = 0;                // of 20: the first, whose input is the control's
     std::vector<std::string> took{};  // of each episode; empty: not told
+    std::size_t steps = 1;            // of each episode: all of them the same action
   };
 
   struct Spec {
@@ -193,6 +194,7 @@ class FabricatedRun : public TemporaryDirectory {
                      {"failure", won ? "none" : s.failure},
                      {"attribution", won || s.attribution.empty() ? Json() : Json(s.attribution)},
                      {"action", std::isnan(arm.action) ? Json() : Json(std::vector<double>(12, arm.action))}};
+        if (arm.steps > 1) episode["then"] = Json::array_t(arm.steps - 1, episode["action"]);
         if (!arm.took.empty()) episode["took"] = arm.took.at(i);
         if (s.inputs_seen >= 0) episode["input_seen"] = static_cast<int>(i) < s.inputs_seen;
         episodes += canonical(episode) + '\n';
