@@ -1,5 +1,7 @@
 // LGA-S: as LGA, with the picture beside the goal mask, each through a tower of its own (paper, section 5, ablation),
 // or both through one.
+#include <memory>
+
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/learning/cloning_method.hpp>
 #include <lgabench/plugin/plugin.hpp>
@@ -37,6 +39,8 @@ class Fused : public lgabench::Learner {
     Samples one(shape(samples.shape), samples.rows);
     one.unaltered = samples.unaltered;
     one.labels = samples.labels;
+    one.state = samples.state;
+    if (samples.stops) one.stops = std::make_shared<Samples>(fused(*samples.stops));
     const auto all = static_cast<std::size_t>(one.shape.pictures.front().channels);
     std::size_t channel = 0;
     for (std::size_t i = 0; i < samples.pictures.size(); ++i)

@@ -13,6 +13,7 @@
 #include <lgabench/host/messages.hpp>
 #include <lgabench/learning/featurizer.hpp>
 #include <lgabench/learning/network.hpp>
+#include <lgabench/learning/noisy_copies.hpp>
 #include <lgabench/learning/training.hpp>
 
 #include "altered_environment.hpp"
@@ -216,7 +217,7 @@ TEST(Steps, TrajectoriesAndRecoveryStepsAreToldApartInEveryForm) {
   EXPECT_SAYS(message_of<Error>([&] { host::pack(layout, all); }), "state: expected 1 numbers, got 2");
 }
 
-TEST(Steps, EveryStepIsARowButWhereNothingIsLeftToDo) {
+TEST(Steps, EveryStepIsARowAndThoseWhereNothingIsLeftToDoAreApart) {
   auto all = shown(reach(), 2, 2);
   std::size_t steps = 0;
   for (const Demonstration& one : all) steps += one.steps.size() + one.recovery.size();
@@ -224,6 +225,18 @@ TEST(Steps, EveryStepIsARowButWhereNothingIsLeftToDo) {
   Featurizer featurizer({{PolicyInputs::Picture::mask}}, actions_of(reach()), state_of(reach()));
   const Samples samples = featurizer.samples(all);
   EXPECT_EQ(samples.rows, static_cast<int>(steps) - 1);
+  ASSERT_TRUE(samples.stops);
+  EXPECT_EQ(samples.stops->rows, 1);
+  EXPECT_EQ(samples.stops->labels, std::vector<float>(2));
+  const Observation& last = all[0].steps.back().observation;
+  EXPECT_FLOAT_EQ(samples.stops->state[1], static_cast<float>(last.state[1]));
+  Samples one(featurizer.shape(), 1);
+  featurizer.write(last, all[0].instruction, Phase::training, one, 0);
+  EXPECT_EQ(samples.stops->pictures, one.pictures);
+  EXPECT_FALSE(featurizer.samples(shown(reach(), 1)).stops);
+  const Samples noisy = with_noisy_copies(samples, 2, .05, 0);
+  EXPECT_EQ(noisy.stops, samples.stops);
+  for (std::size_t i = 0; i < noisy.state.size(); ++i) EXPECT_EQ(noisy.state[i], samples.state[i / 6 * 2 + i % 2]);
   const Observation& first = all[0].steps[0].observation;
   EXPECT_FLOAT_EQ(samples.state[0], static_cast<float>(first.state[0] / .5));
   EXPECT_FLOAT_EQ(samples.state[1], static_cast<float>(first.state[1]));

@@ -83,6 +83,7 @@ class CloningPolicy : public Policy {
   /// Remembers which inputs it learned from.
   void learned_from(const Samples& shown) {
     for (int row = 0; row < shown.rows; ++row) seen_.learn(hash_of(shown, row));
+    if (shown.stops) learned_from(*shown.stops);
   }
 
   Action act(const Observation& observation, const Instruction& instruction) override {

@@ -25,15 +25,16 @@ SampleShape Featurizer::shape() const {
 }
 
 Samples Featurizer::samples(const std::vector<Demonstration>& demonstrations, int copies, const Augment& augment) {
-  std::size_t steps = 0;
-  const auto for_each_row = [&](const auto& call) {
+  const auto for_each = [&](bool stops, const auto& call) {
     for (const Demonstration& demonstration : demonstrations)
       for_each_step(demonstration, [&](const Step& step) {
-        if (!step.label.empty()) call(step, demonstration.instruction);
+        if (step.label.empty() == stops) call(step, demonstration.instruction);
       });
   };
-  for_each_row([&](const Step&, const Instruction&) { ++steps; });
-  const int unaltered = static_cast<int>(steps);
+  const auto for_each_row = [&](const auto& call) { for_each(false, call); };
+  int unaltered = 0, stopped = 0;
+  for_each_row([&](const Step&, const Instruction&) { ++unaltered; });
+  for_each(true, [&](const Step&, const Instruction&) { ++stopped; });
   Samples samples(shape(), unaltered * (1 + copies));
   samples.unaltered = unaltered;
   auto label = samples.labels.begin();
@@ -50,6 +51,14 @@ Samples Featurizer::samples(const std::vector<Demonstration>& demonstrations, in
       augment(step, mask_selection(instruction), of++, copy);
       add(step, instruction, row++);
     });
+  }
+  if (stopped > 0) {
+    auto stops = std::make_shared<Samples>(shape(), stopped);
+    int of = 0;
+    for_each(true, [&](const Step& step, const Instruction& instruction) {
+      write(step.observation, instruction, Phase::training, *stops, of++);
+    });
+    samples.stops = std::move(stops);
   }
   return samples;
 }

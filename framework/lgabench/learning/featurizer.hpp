@@ -64,8 +64,8 @@ class Featurizer {
   using Augment = std::function<void(Step&, const Selection&, int row, int copy)>;
 
   /// Makes a row with its label for each step of each demonstration, in their order: of its episode, then of its
-  /// recovery. A step whose label says that nothing is left to do has none. Behind them, copy by copy, come as many
-  /// rows for each copy.
+  /// recovery. A step whose label says that nothing is left to do is a row of Samples::stops, and has no copy. Behind
+  /// them, copy by copy, come as many rows for each copy.
   Samples samples(const std::vector<Demonstration>& demonstrations, int copies = 0, const Augment& augment = {});
   /// Writes the inputs of one row; its label stays. After its first call it allocates nothing, unless `prepare` does.
   /// @throws MethodError for an utterance that `masks` lacks, InputError for a picture whose pixels do not fit its

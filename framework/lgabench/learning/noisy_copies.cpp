@@ -49,11 +49,14 @@ Samples with_noisy_copies(const Samples& clean, int copies, double scale, std::u
       });
       for (std::size_t i = 0; i < clean.pictures.size(); ++i)
         put(clean.pictures[i], all.pictures[i], [](std::size_t) { return 1.; });
-      if (clean.shape.text) {
-        const auto n = static_cast<std::ptrdiff_t>(text_size);
-        std::copy_n(clean.text.begin() + row * n, n, all.text.begin() + (row * (1 + copies) + copy) * n);
-      }
+      const auto keep = [&](const std::vector<float>& from, std::vector<float>& to, std::size_t numbers) {
+        const auto n = static_cast<std::ptrdiff_t>(numbers);
+        std::copy_n(from.begin() + row * n, n, to.begin() + (row * (1 + copies) + copy) * n);
+      };
+      if (clean.shape.text) keep(clean.text, all.text, text_size);
+      keep(clean.state, all.state, clean.shape.state.size());
     }
+  all.stops = clean.stops;
   return all;
 }
 

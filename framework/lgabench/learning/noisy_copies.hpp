@@ -13,9 +13,9 @@ enum class CopyNoise { deviations, ranges };
 
 /// Returns each row of `clean`, followed by `copies` of it with Gaussian noise on pictures and label. The noise has a
 /// standard deviation of `scale` times what `of` says.
-/// Nothing is clipped, no quaternion is normalised, and the text stays as it was. The noise comes from a random stream
-/// per row and copy, named by `seed`, so that further rows leave those before them as they are. Source: released code
-/// (gen_trajs.py, whose defaults are 5 copies and .05, and which adds the noise to the picture of 36 x 72 that its
+/// Nothing is clipped, no quaternion is normalised, and text and state stay as they were. The noise comes from a random
+/// stream per row and copy, named by `seed`, so that further rows leave those before them as they are. Source: released
+/// code (gen_trajs.py, whose defaults are 5 copies and .05, and which adds the noise to the picture of 36 x 72 that its
 /// network sees).
 Samples with_noisy_copies(const Samples& clean, int copies, double scale, std::uint64_t seed,
                           CopyNoise of = CopyNoise::deviations);

@@ -1,5 +1,6 @@
 // What a learner learns from and acts on.
 #pragma once
+#include <memory>
 #include <vector>
 
 #include <lgabench/core/action.hpp>
@@ -23,7 +24,7 @@ struct SampleShape {
   std::vector<StateNumber> state{};  // what an observation says beside its picture
 };
 
-/// Rows of input and label, each array row-major. Copying copies all numbers.
+/// Rows of input and label, each array row-major. Copying copies all numbers but those of `stops`.
 struct Samples {
   /// Makes `count` rows of zeros.
   Samples(SampleShape of_a_row, int count);
@@ -46,6 +47,9 @@ struct Samples {
   std::vector<float> text;                   // rows x 384, or empty
   std::vector<float> state;                  // rows x numbers of the state, each within -1 and 1
   std::vector<float> labels;                 // rows x numbers of an action: the oracle's, as_stored()
+  /// Rows of input at which the demonstrations say that nothing is left to do; their labels are zeros, which are no
+  /// action. None of them is a row of this, so that no loss and no mean has them. Null where there is none.
+  std::shared_ptr<const Samples> stops{};
 };
 
 /// Picture number `which` as most rows have it: for each of its numbers, the value of more than half of the unaltered
