@@ -14,6 +14,21 @@ FOUND = {"LGABENCH_PLUGIN_PATH": str(BUILD / "tests/plugins/examples"), "LGABENC
 # Enough to see what a state is worth: 0.76 of 200 episodes with it, 0.21 without.
 LEARNS = ("--methods", "human+network=spot", "--demos", "100", "--seeds", "0", "--episodes", "200", "--set", "human.epochs=200")
 
+# How an environment breaks the interface (LGABENCH_TEST_BREAKS of tests/bad_plugins/environments) -> what check-plugin says.
+AT = "environment reach2d: scene 0 of test, step "
+BREAKS = {
+    "nan": AT + "1: state: down: expected -0.5 to 0.5, got nan",
+    "length": AT + "0: state: expected 2 numbers, got 1",
+    "wins_and_goes_on": AT + "4: a success in an episode that did not end",
+    "wins_and_fails": AT + '4: the failure is "not_reached" of a success',
+    "ends_without_a_word": AT + '1: the failure of an episode that is over is "goes_on"',
+    "fails_and_goes_on": AT + '1: the failure of an episode that goes on is "not_reached"',
+    "never_ends": "one of them: scene 9 of test, step 20: the oracle has not ended it",
+    "oracle_waits": "one of them: scene 9 of test, step 20: not_reached",
+    "oracle_stops": AT + "0: the oracle says that nothing is left to do, and the scenario has no may_stop",
+    "remembers": "a scene played again ended differently",
+}
+
 
 class Steps(Case):
     def setUp(self):
@@ -76,6 +91,30 @@ class Steps(Case):
         told = self.call("check-plugin", str(plugins / "kinematic.so"), "--environment", "reach2d").stdout
         self.assertIn("oracle, reach", told)
         self.assertIn("the oracle succeeds in 50 of 50 scenes", self.call("check-scenario", "reach2d_red").stdout)
+
+    def broken(self, how):
+        self.environment.update(LGABENCH_PLUGIN_PATH=str(BUILD / "tests/plugins/broken"), LGABENCH_TEST_BREAKS=how)
+
+    def test_what_breaks_the_interface_is_found_by_check_plugin(self):
+        for how, said in BREAKS.items():
+            with self.subTest(how):
+                self.broken(how)
+                told = self.call("check-plugin", str(BUILD / "tests/plugins/broken/reach2d.so"), expect=1).stdout
+                self.assertIn(said, told)
+        self.broken("")
+        self.assertIn("no problem", self.call("check-plugin", str(BUILD / "tests/plugins/broken/reach2d.so")).stdout)
+
+    def test_what_breaks_the_interface_costs_its_cells_alone(self):
+        self.broken("nan")  # where there is a state
+        self.call("run", str(SOURCE / "reach2d_suite.json"), "--answers", "none", "--methods", "human", "--demos", "1", "--seeds", "0",
+                  "--episodes", "2", "--set", "human.epochs=1", "--out", "run", expect=3)
+        for folder in (self.dir / "run/cells").iterdir():
+            status = json.loads((folder / "status.json").read_text())
+            if json.loads((folder / "cell.json").read_text())["scenario"]["id"] == "reach2d_blind":
+                self.assertEqual(status["state"], "ok")
+            else:
+                self.assertEqual((status["state"], status["fault"]), ("failed", "host"))
+                self.assertRegex(status["reason"], "^environment reach2d: scene 0 of (train|test), step 1: state: down: .*got nan$")
 
 
 if __name__ == "__main__":

@@ -5,4 +5,7 @@ target_compile_definitions(steps_test PRIVATE
   LGABENCH_TEST_SCENARIOS="${PROJECT_SOURCE_DIR}/examples/reach2d")
 lgabench_add_plugin(reach2d ${PROJECT_SOURCE_DIR}/examples/reach2d/reach2d.cpp
                     DIRECTORY ${PROJECT_BINARY_DIR}/tests/plugins/examples)
-add_dependencies(steps_test reach2d engines)
+lgabench_add_plugin(broken_reach2d ${PROJECT_SOURCE_DIR}/tests/bad_plugins/environments/broken_reach2d.cpp
+                    DIRECTORY ${PROJECT_BINARY_DIR}/tests/plugins/broken)
+set_target_properties(broken_reach2d PROPERTIES OUTPUT_NAME reach2d)
+add_dependencies(steps_test reach2d broken_reach2d engines)

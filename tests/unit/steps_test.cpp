@@ -163,7 +163,10 @@ TEST(Steps, WhatAPolicyThrowsEndsTheEpisodeAndKeepsWhatWasDone) {
 
 TEST(Steps, NothingLeftToDoIsSaidOnlyWhereTheScenarioHasIt) {
   const Actor stops = doing([](const Given& given) { return given.step == 0 ? Action{0, 0} : Action(); });
-  EXPECT_EQ(played(reach(), stops, 1)[0].failure, failure::method_error);
+  const Episode refused = played(reach(), stops, 1)[0];
+  EXPECT_EQ(refused.failure, failure::method_error);
+  EXPECT_SAYS(refused.error, "action: expected 2 numbers, got none");
+  EXPECT_EQ(refused.actions().size(), 1u);
   const Episode stopped = played(reach_with({{"may_stop", true}}), stops, 1)[0];
   EXPECT_EQ(stopped.failure, "not_reached");
   EXPECT_TRUE(stopped.done);
@@ -317,6 +320,19 @@ TEST(BrokenSteps, AreEachSaidWithSceneAndStep) {
             at + "1: the failure of an episode that is over is \"goes_on\"");
   EXPECT_EQ(broken([](StepResult& r) { r.failure = "not_reached"; }),
             at + "1: the failure of an episode that goes on is \"not_reached\"");
+}
+
+TEST(BrokenSteps, AnEnvironmentThatGoesOnAfterDoneIsSaid) {
+  Scenario scenario = reach_with({{"may_stop", true}});
+  const AlteredType type(*scenario.environment, [](StepResult& r) {
+    r.terminated = false;
+    r.failure = failure::goes_on;
+  });
+  scenario.environment = &type;
+  EXPECT_EQ(
+      message_of<EngineError>([&] { played(scenario, doing([](const Given&) { return Action(); }), 1); }),
+      "environment reach2d: scene 0 of test, step 1: the episode goes on after its actor said that nothing is left "
+      "to do");
 }
 
 TEST(BrokenSteps, AnEpisodeThatNeverEndsFailsAfterItsLastStep) {

@@ -64,7 +64,12 @@ class InOrder final : public Environment {
   }
   std::vector<EngineBody> bodies() const override { return after_reset("bodies()").bodies(); }
   Observation observe() override { return checked(after_reset("observe()").observe()); }
-  Action expert_action() const override { return after_reset("expert_action()").expert_action(); }
+  Action expert_action() const override {
+    Action action = after_reset("expert_action()").expert_action();
+    if (action.empty() && !may_stop_)
+      fail("the oracle says that nothing is left to do, and the scenario has no may_stop");
+    return action;
+  }
   Action expert_action_for(std::uint8_t instance_id) const override {
     return after_reset("expert_action_for()").expert_action_for(instance_id);
   }
@@ -76,6 +81,11 @@ class InOrder final : public Environment {
   }
 
   Action stored(const Action& action) const {
+    if (action.empty())
+      throw MethodError(
+          fmt::format("action: expected {} numbers, got none, which says that nothing is left to do where a "
+                      "scenario has may_stop",
+                      action_space().size()));
     executable(action_space(), action);  // refuses what has no place in a file
     return as_stored(action_space(), action);
   }

@@ -37,15 +37,17 @@ std::string bytes_of(const Observation& seen) {
 
 Played play(Environment& environment, const Scene& scene) {
   Played played{bytes_of(environment.reset(scene))};
-  for (bool over = false; !over;) {
+  int steps = 0;
+  for (bool over = false; !over; ++steps) {
     const StepResult result = environment.step(environment.expert_action());
     played.bytes += fmt::format(" {} {}", bytes_of(result.observation), result.failure);
     played.success = result.is_success;
-    played.failure = result.failure == failure::goes_on
-                         ? fmt::format("the oracle has not ended it after {} steps", environment.most_steps())
-                         : result.failure;
+    played.failure = result.failure;
     over = result.terminated || result.truncated;
   }
+  if (environment.most_steps() > 1)
+    played.failure = fmt::format("scene {} of {}, step {}: {}", scene.index, scene.arm, steps,
+                                 played.failure == failure::goes_on ? "the oracle has not ended it" : played.failure);
   played.bytes += '\n';
   return played;
 }

@@ -1,5 +1,7 @@
 #include <lgabench/cell/evaluator.hpp>
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include <lgabench/core/hash.hpp>
@@ -27,7 +29,8 @@ Episode play(Environment& environment, const TestScene& test, const Actor& actor
       if (environment.most_steps() == 1 || result.terminated || result.truncated) return episode;
       observation = std::move(result.observation);
     } catch (const MethodError& e) {
-      to_stderr("episode {} of {}: {}\n", scene.index, scene.arm, e.what());
+      const std::string at = environment.most_steps() == 1 ? "" : fmt::format(", step {}", step + 1);
+      to_stderr("episode {} of {}{}: {}\n", scene.index, scene.arm, at, e.what());
       episode.failure = failure::method_error;
       episode.error = e.what();
       return episode;
