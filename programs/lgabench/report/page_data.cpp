@@ -139,7 +139,8 @@ class PageData {
   Json of_arm(const CellResult& cell, const std::string& arm) {
     std::string outcomes, blamed;  // a character an episode
     std::vector<std::string> hashes;
-    Json given = Json::array(), actions = Json::object(), ends = Json::object(), read = Json::object();
+    Json given = Json::array(), actions = Json::object(), then = Json::object(), ends = Json::object(),
+         read = Json::object();
     const std::vector<Episode>& all = cell.episodes.at(arm);
     for (std::size_t i = 0; i < all.size(); ++i) {
       const Episode& e = all[i];
@@ -148,8 +149,10 @@ class PageData {
       hashes.push_back(e.scene);
       given.push_back(e.given());
       if (!e.action.empty() && pictures_.scenes.count(e.scene) != 0)
-        if (Json places = places_of(cell.environment, e.action); !places.empty())
+        if (Json places = places_of(cell.environment, e.action); !places.empty()) {
           actions[std::to_string(i)] = std::move(places);
+          for (const Action& next : e.then) then[std::to_string(i)].push_back(places_of(cell.environment, next));
+        }
       if (const auto end = pictures_.ends.find(end_key(cell, arm, i, cell.engine)); end != pictures_.ends.end())
         ends[std::to_string(i)] = end->second;
       if (const auto input = pictures_.inputs.find(episode_key(cell, arm, i)); input != pictures_.inputs.end())
@@ -158,15 +161,17 @@ class PageData {
     const auto row = [&](const std::string& scenario) {
       return rows_.at(place(cell.layout, cell.engine, arm, scenario, cell.method, cell.demonstrations));
     };
-    return {{"arm", arm},
-            {"rows", {row(cell.scenario), row(mean_scenario)}},
-            {"scenes", scenes_.number_of(hashes)},
-            {"commands", given},
-            {"outcomes", outcomes},
-            {"attribution", blamed},
-            {"actions", actions},
-            {"ends", ends},
-            {"read", read}};
+    Json played{{"arm", arm},
+                {"rows", {row(cell.scenario), row(mean_scenario)}},
+                {"scenes", scenes_.number_of(hashes)},
+                {"commands", given},
+                {"outcomes", outcomes},
+                {"attribution", blamed},
+                {"actions", actions},
+                {"ends", ends},
+                {"read", read}};
+    if (!then.empty()) played["then"] = std::move(then);
+    return played;
   }
 
   const Material& material_;

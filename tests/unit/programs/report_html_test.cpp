@@ -219,10 +219,12 @@ TEST(Html, ANumberLeadsToItsEpisodes) {
   }
 }
 
-TEST(Html, ActionsAreDrawnWhereTheyWere) {
+// Of episodes of so many steps, the last of which has a picture of its scene.
+std::string page_of_steps(std::size_t steps) {
   FabricatedRun run;
   FabricatedRun::Spec spec{"lga", 19};
   spec.arms = {{"test", 19, {0}, .3}};
+  spec.arms.front().steps = steps;
   run.add(spec);
   const statistics::RunResults results = statistics::read_run(run.save().path);
   report::Pictures pictures;
@@ -233,11 +235,20 @@ TEST(Html, ActionsAreDrawnWhereTheyWere) {
   const std::vector<statistics::EngineAgreement> agreements;
   const statistics::PaperValues paper = statistics::paper_values("q1");
   const report::Material material{results, summary, claims, agreements, paper, pictures};
-  const std::string page = document::html(report::report_document(material), report::page_data(material));
+  return document::html(report::report_document(material), report::page_data(material));
+}
+
+TEST(Html, ActionsAreDrawnWhereTheyWere) {
+  const std::string page = page_of_steps(1);
   // x = .3 lies .05/.5 of the way down, y = .3 .8 of the way to the right.
-  const Json drawn = data_of(page).at("cells")[0].at("arms")[0].at("actions");
-  EXPECT_EQ(drawn, (Json{{"19", {{204.8, 12.8}, {204.8, 12.8}}}}));
+  const Json places{{204.8, 12.8}, {204.8, 12.8}};
+  const Json arm = data_of(page).at("cells")[0].at("arms")[0];
+  EXPECT_EQ(arm.at("actions"), (Json{{"19", places}}));
+  EXPECT_FALSE(arm.contains("then"));
   EXPECT_SAYS(page, "Pictures: 1 of the 1 scenes");
+  const Json of_three = data_of(page_of_steps(3)).at("cells")[0].at("arms")[0];
+  EXPECT_EQ(of_three.at("actions"), arm.at("actions"));
+  EXPECT_EQ(of_three.at("then"), (Json{{"19", Json::array({places, places})}}));
 }
 
 TEST(Html, EveryFailureAndEveryCauseHasAColour) {

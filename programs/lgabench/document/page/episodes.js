@@ -14,7 +14,7 @@ function episodesOf(row) {
             cell, arm: played.arm, index, scene, command: cell.commands[command],
             failure: outcome === "." ? "" : words(data.failures[outcome.charCodeAt(0) - 97]),
             attribution: to === "a" ? "abstraction" : to === "p" ? "policy" : to === "s" ? "perception" : to === "r" ? "reading" : "",
-            action: played.actions[index], picture: data.pictures[scene], end: played.ends[index],
+            action: played.actions[index], then: played.then?.[index] || [], picture: data.pictures[scene], end: played.ends[index],
             oracle: data.oracle[scene], targets: data.targets[scene],
             mask: cell.masks[command] && data.masks[scene + cell.masks[command]],
             input: data.inputs[played.read[index]],
@@ -38,7 +38,7 @@ function picture(bytes, alt, over = "") {
 
 // From the action's first place to its last, if it has two, on black, so that it shows on every texture.
 function arrow(action, colour, dashes = "none") {
-  if (!action) return "";
+  if (!action?.length) return "";
   const [x0, y0] = action[0], [x1, y1] = action[action.length - 1], angle = Math.atan2(y1 - y0, x1 - x0);
   const wing = (turn) => `${x1 - 9 * Math.cos(angle + turn)} ${y1 - 9 * Math.sin(angle + turn)}`;
   const way = `M${x0} ${y0}L${x1} ${y1}`, head = action.length < 2 ? "" : `M${wing(.5)}L${x1} ${y1}L${wing(-.5)}`;
@@ -70,11 +70,27 @@ const leaves = (e) => {
 const before = (e) => picture(e.picture, `before: ${where(e)}${wayOf("action", e.action)}${wayOf("oracle", e.oracle)}`,
   outline(e) + oracle(e) + own(e));
 const kept = (e) => e.mask ? picture(e.mask, `goal mask: ${where(e)}`, outline(e) + own(e)) : "";
-// The ends of an episode: one picture, or that after each of several steps.
-const ends = (e) => e.end === undefined ? [] : [e.end].flat().map((end, i, all) => {
-  const name = all.length === 1 ? "after the action" : `after step ${i + 1} of ${all.length}`;
-  return [end === "" ? `${name}: nothing moved` : name, picture(end || e.picture, `${name}: ${where(e)}`)];
-});
+// How an episode of one action ended; none of several.
+const after = (e) => typeof e.end !== "string" ? "" : picture(e.end || e.picture, `after the action: ${where(e)}`);
+
+// An episode of several steps, a step at a time: a picture before each action, which is drawn in it, and at the end. The
+// slider says which of them is shown, at first the end.
+function steps(e) {
+  if (!Array.isArray(e.end)) return "";
+  const pictures = [e.picture, ...e.end.map((end) => end || e.picture)], last = e.end.length;
+  const names = pictures.map((bytes, i) => i === 0 ? `before step 1 of ${last}` :
+    `after step ${i} of ${last}${bytes === pictures[i - 1] ? ": nothing moved" : ""}`);
+  const shown = pictures.map((bytes, i) => `<div data-name="${names[i]}"${i === last ? "" : " hidden"}>` +
+    `<button type="button" class="zoom" aria-pressed="false">${picture(bytes, `${names[i]}: ${where(e)}`,
+      i === last ? "" : arrow([e.action, ...e.then][i], "#fff"))}</button></div>`);
+  return `<figure class="stepwise">${shown.join("")}<input type="range" min="0" max="${last}" value="${last}" ` +
+    `aria-label="Step" aria-valuetext="${names[last]}"><figcaption>${names[last]}</figcaption></figure>`;
+}
+function showStep(slider) {
+  const figure = slider.closest(".stepwise"), all = [...figure.querySelectorAll("[data-name]")], now = all[slider.valueAsNumber];
+  for (const one of all) one.hidden = one !== now;
+  slider.setAttribute("aria-valuetext", figure.querySelector("figcaption").textContent = now.dataset.name);
+}
 
 const card = (e) =>
   `<figure><button type="button" class="zoom" data-episode="${escaped(episodeId(e))}"><span class="pair">` +
@@ -95,13 +111,13 @@ function read(e) {
 // One episode, as large as the dialog.
 function single(e) {
   const shown = [["before: the action is white, the oracle’s green, the target outlined", before(e)],
-    ...ends(e),
+    [e.end === "" ? "after the action: nothing moved" : "after the action", after(e)],
     ["goal mask: what φ̂ keeps of the scene", kept(e)], ...saw(e)].filter(([, drawn]) => drawn);
   return `<p>${told(e)}. ${escaped(e.command)}${leaves(e)} <small>${escaped(where(e))}</small></p>${chips(e)}<div class="large">` +
     shown.map(([name, drawn]) =>
       `<figure><button type="button" class="zoom" aria-pressed="false">${drawn}</button><figcaption>${name}</figcaption></figure>`)
       .join("") +
-    `</div>${read(e)}<p>Again, as an animation: <code>lgabench replay RUN ${escaped(episodeId(e))} --out episode.gif</code></p>`;
+    `${steps(e)}</div>${read(e)}<p>Again, as an animation: <code>lgabench replay RUN ${escaped(episodeId(e))} --out episode.gif</code></p>`;
 }
 
 function listOf(shown) {
@@ -157,8 +173,9 @@ $("all").onclick = () => show(now.row, now.outcome);
 $("outcome").onchange = () => show(now.row, $("outcome").value);
 panel.onkeydown = (event) => {
   const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-  if (by && event.target.tagName !== "SELECT") step(by);
+  if (by && !["SELECT", "INPUT"].includes(event.target.tagName)) step(by);
 };
+body.oninput = (event) => showStep(event.target);
 body.onclick = (event) => {
   const zoom = event.target.closest(".zoom");
   if (!zoom) return;
