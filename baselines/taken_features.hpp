@@ -15,8 +15,10 @@ struct TakenFeatures {
   lgabench::TakenLooks taken, received;  // the latter: what it was brought to, where actions have stations
 
   void add(const lgabench::Demonstration& one, const lgabench::ActionSpace& actions) {
-    for (const lgabench::Step& step : one.steps) add(taken, step.observation, lgabench::taken(step, actions));
-    add(received, one.steps.at(0).observation, lgabench::receiving(one, actions));
+    for (const lgabench::Step& step : one.steps) {
+      add(taken, step.observation, lgabench::taken(step, actions));
+      add(received, step.observation, lgabench::receiving(step, actions));
+    }
   }
 
  private:

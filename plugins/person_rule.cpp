@@ -122,6 +122,9 @@ class PersonRuleMethod final : public CloningMethod {
     Shown shown;
     for (const Demonstration& one : demonstrations) {
       if (one.instruction.utterance != command.utterance) continue;
+      if (one.steps.size() != 1)
+        throw MethodError("learns " + learns + ": expected demonstrations of one step, got " +
+                          std::to_string(one.steps.size()) + ": a person's rule says what is taken once");
       const std::vector<Placed> visible = placed(one.steps.at(0).observation);
       const auto is_goal = [](const Placed& object) { return is_place(object.instance.object_type); };
       if (std::none_of(visible.begin(), visible.end(), is_goal)) continue;  // rules speak of a place in view

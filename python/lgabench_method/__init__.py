@@ -398,16 +398,18 @@ def goal_mask(observation: Observation, selection: Selection) -> Bytes:
     return numpy.isin(observation.ids, kept).astype(numpy.uint8)
 
 
-def taken(demonstration: Demonstration, layout: dict[str, Any]) -> Optional[int]:
-    """Id of the instance that the demonstrated action takes, or pushes, as lgabench::taken() of core/method.hpp finds it.
+def taken(demonstration: Union[Demonstration, Step], layout: dict[str, Any]) -> Optional[int]:
+    """Id of the instance that the step's label takes, or pushes, as lgabench::taken() of core/method.hpp finds it; of a
+    demonstration that of the first step.
 
-    `layout` is Services.layout. None where nothing that can be taken is in view.
+    `layout` is Services.layout. None where nothing that can be taken is in view, or where the label says that nothing is left
+    to do.
     """
-    step = demonstration.steps[0]
+    step = demonstration.steps[0] if isinstance(demonstration, Demonstration) else demonstration
     numbers, places = layout["action"]["numbers"], layout["action"]["places"]
     ids = [one.id for one in step.observation.instances if one.object_type != PLACE]
     rows, columns = numpy.nonzero(numpy.isin(step.observation.ids, ids))
-    if not len(rows) or not places:
+    if not len(rows) or not places or not len(step.label):
         return None
 
     def pixel(place: Sequence[int]) -> Numbers:

@@ -59,6 +59,8 @@ class Meanings(unittest.TestCase):
                     action = env.expert_action()
                     found = taken(Demonstration(Instruction("", Selection()), [Step(scene, action)]), layout)
                     numpy.testing.assert_array_equal(env.expert_action(found), action)
+                    self.assertEqual(taken(Step(scene, action), layout), found)
+                    self.assertIsNone(taken(Step(scene, action[:0]), layout), "nothing is left to do")
         self.assertEqual(tasks, {"pick_and_place", "rotate", "sweep", "stack", "bring", "throw_away", "fetch"})
 
     def test_the_object_meant_is_the_samplers_target(self):

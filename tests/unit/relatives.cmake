@@ -1,5 +1,5 @@
 lgabench_unit_test(relatives_test SOURCES relatives_test.cpp LINK lgabench_harness lgabench_learning lgabench_tabletop)
-add_dependencies(relatives_test engines masked_rgb masked_bc texture_aug class_aug erase object_dropout keypoints set_network embedding_select taken_features taken_names lga_taken lga_then_taken lga_s)
+add_dependencies(relatives_test engines masked_rgb masked_bc texture_aug class_aug erase object_dropout keypoints set_network embedding_select taken_features taken_names lga_taken lga_then_taken lga_s person_rule)
 if(TARGET diffusion)
   add_dependencies(relatives_test diffusion)
   target_compile_definitions(relatives_test PRIVATE LGABENCH_HAS_DIFFUSION)

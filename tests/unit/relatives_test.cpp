@@ -1,4 +1,5 @@
 // What the rows after other papers claim to do to a picture, found in what their policies have learned from and read.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include <lgabench/plugin/loader.hpp>
 
 #include "../../baselines/class_copies.hpp"
+#include "../../baselines/taken_features.hpp"
 #include "../engine_under_test.hpp"
 #include "testing.hpp"
 
@@ -466,6 +468,50 @@ TEST_F(Relatives, ASetNetworkTakesWhatIsSelectedWhereverItLies) {
   Observation permuted = probe;
   std::rotate(permuted.instances.begin(), permuted.instances.begin() + 1, permuted.instances.end());
   EXPECT_EQ(policy->act(permuted, instruction), first) << "the order of the table says nothing";
+}
+
+// Two scenes, as if one came after the other.
+Demonstration of_two_steps(const Scenario& scenario) {
+  const auto environment =
+      make_environment(scenario, load_engine(scan_plugins(plugin_directories()).find("engine", "kinematic")));
+  Demonstration one{{scenario.commands.front().utterance, {}}, {}};
+  for (int i = 0; i < 2; ++i) {
+    Observation seen = environment->reset(training_scene(scenario, layouts_of(scenario).front(), {}, 1, i));
+    one.steps.push_back({std::move(seen), environment->expert_action()});
+  }
+  return one;
+}
+
+TEST(SeveralSteps, TellRulesOfLabelsWhatEachTookAndWhereItWasBrought) {
+  const Scenario scenario = load_scenario("fetch_fruit");
+  Demonstration one = of_two_steps(scenario);
+  one.steps.push_back({one.steps.front().observation, {}});  // nothing is left to do
+  const TakenFeatures features = taken_by({one}, actions_of(scenario));
+  EXPECT_EQ(features.taken.objects.size(), 2u);
+  EXPECT_EQ(features.received.objects.size(), 2u);
+}
+
+TEST(SeveralSteps, AreRefusedByTheRuleOfAPerson) {
+  const Scenario scenario = load_scenario("persons_20261127_01");
+  const PluginInfo plugin = scan_plugins(plugin_directories()).find("method", "person_rule");
+  const std::vector<Demonstration> shown{of_two_steps(scenario)};
+  const Command command{shown.front().instruction.utterance, scenario.task};
+  for (const char* learns : {"words", "bayes", "common_looks"}) {
+    const Json all = resolve_options(plugin, {{"learns", learns}});
+    const auto method = load_method(plugin);
+    RecordedLanguageModel lm(scenario, scenario.recorded);
+    TruthAsHuman human(scenario.commands);
+    Silent log;
+    Services services{lm, human, all, 0, log, actions_of(scenario)};
+    const Selection first = method->select(command, scenario.space, services);
+    const auto revise = [&] { method->revise(command, first, shown, services); };
+    if (learns == std::string("words"))
+      EXPECT_NO_THROW(revise());
+    else
+      EXPECT_SAYS(
+          message_of<MethodError>(revise),
+          fmt::format("learns {}: expected demonstrations of one step, got 2: a person's rule says what", learns));
+  }
 }
 
 }  // namespace

@@ -27,9 +27,10 @@ TEST(Taken, IsTheOraclesTargetInEveryTask) {
           const auto found = taken({{}, {{seen, label}}}, environment->action_space());
           EXPECT_EQ(found, scene.find("target")->instance_id) << id << " " << layout << " " << i;
           const SceneObject* const receiver = scene.find("receiver");
-          EXPECT_EQ(receiving({{}, {{seen, label}}}, actions_of(scenario)),
+          EXPECT_EQ(receiving({seen, label}, actions_of(scenario)),
                     receiver ? std::optional(receiver->instance_id) : std::nullopt)
               << id << " " << i;
+          EXPECT_FALSE(taken(Step{seen, {}}, actions_of(scenario)) || receiving({seen, {}}, actions_of(scenario)));
           ++tasks[scenario.task];
         }
       } catch (const NothingToShow&) {  // what is too wide for this layout

@@ -53,15 +53,14 @@ Action led_to(const Stations& stations, std::size_t station, Action action) {
   return action;
 }
 
-std::optional<std::uint8_t> receiving(const Demonstration& demonstration, const ActionSpace& actions) {
-  if (actions.stations.all.empty()) return std::nullopt;
-  const Step& first = demonstration.steps.at(0);
-  const Vec2 station = actions.stations.all[station_of(actions.stations, first.label)].seen;
-  const std::optional<std::uint8_t> carried = taken(demonstration, actions);
+std::optional<std::uint8_t> receiving(const Step& step, const ActionSpace& actions) {
+  if (step.label.empty() || actions.stations.all.empty()) return std::nullopt;
+  const Vec2 station = actions.stations.all[station_of(actions.stations, step.label)].seen;
+  const std::optional<std::uint8_t> carried = taken(step, actions);
   std::optional<std::uint8_t> nearest;
   double least = std::numeric_limits<double>::infinity();
-  for (const Instance& one : first.observation.instances) {
-    const std::optional<Vec2> at = seen_at(actions, first.observation, one.id);
+  for (const Instance& one : step.observation.instances) {
+    const std::optional<Vec2> at = seen_at(actions, step.observation, one.id);
     if (!at || one.id == carried || is_place(one.object_type)) continue;
     if (const double away = norm(*at - station); away < least) {
       least = away;

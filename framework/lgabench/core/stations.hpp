@@ -21,8 +21,9 @@ std::optional<Vec2> seen_at(const ActionSpace& actions, const Observation& seen,
 /// The action, led to that station.
 Action led_to(const Stations& stations, std::size_t station, Action action);
 
-/// Id of the instance that the first step's label leads to, where actions have stations: the visible one, beside the
-/// one taken, whose middle is nearest to where the station is seen. None in other action spaces.
-std::optional<std::uint8_t> receiving(const Demonstration& demonstration, const ActionSpace& actions);
+/// Id of the instance that the step's label leads to, where actions have stations: the visible one, beside the one
+/// taken, whose middle is nearest to where the station is seen. None in other action spaces, or where the label is
+/// none.
+std::optional<std::uint8_t> receiving(const Step& step, const ActionSpace& actions);
 
 }  // namespace lgabench
