@@ -467,6 +467,52 @@ class Live(Asking):
         self.assertEqual(len(self.server.asked), 0)
         self.assertIn("--score excludes --show-prompt", self.call("select", "--suite", "q1", "--score", "--show-prompt", expect=2).stderr)
 
+    OWN = ('You see a table. Types: {object_types}. Looks: {textures}.\n---\nSomebody says "{command}". Might {about} '
+           'have the {group} "{candidate}"? Answer at once: "Final answer: yes" or "Final answer: no".\n')
+
+    def test_words_of_ones_own_ask_in_place_of_the_shipped_ones(self):
+        own = self.dir / "own.txt"
+        own.write_text(self.OWN)
+        shown = self.call("select", "red_heart", "--show-prompt", "--prompt", own).stdout
+        self.assertIn('Somebody says "Bring me the red heart.". Might the target object have the object type "', shown)
+        self.play("--prompt", own)
+        self.assertEqual(len(self.server.asked), 224)
+        for body in self.server.bodies:
+            self.assertTrue(body["messages"][0]["content"].startswith("You see a table. Types: L-shaped block, "), body)
+            self.assertTrue(body["messages"][1]["content"].startswith('Somebody says "Bring me the '), body)
+        digest = hashlib.sha256(self.OWN.encode()).hexdigest()
+        named = f"made-up-1 (prompt {digest})"
+        self.assert_matches_schemas("out")
+        answers, = json.loads((self.dir / "out/run.json").read_text())["answers"]
+        self.assertEqual((answers["model"], answers["prompt"]), (named, digest))
+        for cell, _ in self.cells("out").values():
+            self.assertEqual((cell["answers"], cell["data"]["prompt"]), ("openai:" + named, digest))
+        for both in selections(self.dir / "out").values():
+            self.assertEqual(both[0]["source"], named)
+        first, *others = map(json.loads, (self.dir / "tape.jsonl").read_text().splitlines())
+        self.assert_as_schema("cassette", first)
+        self.assertEqual((first["prompt"], [line for line in others if "prompt" in line]), (self.OWN, []))
+
+        # The cassette has the words: nobody needs the file again who replays it.
+        own.rename(self.dir / "away.txt")
+        self.assertIn("4 bit-identical", self.call("verify", "out", "--all").stdout)
+        self.call("run", self.suite, *RUN, "--no-reference", "--answers", "cassette:tape.jsonl", "--out", "kept")
+        for both in selections(self.dir / "kept").values():
+            self.assertEqual(both[0]["source"], named)
+        self.assertEqual(len(self.server.asked), 224)
+        self.assertIn("tape.jsonl: expected replies to lgabench's own prompt, it has those to the prompt " + digest,
+                      self.play(expect=2).stderr)
+        for said, expected in (("", "own.txt: expected a prompt with {object_types}"),
+                               (self.OWN.replace("{about}", "it"), "own.txt: expected {about} in it too"),
+                               (self.OWN + "{color}", "own.txt: line 4: expected {object_types}"),
+                               (self.OWN + " " * 65536, "own.txt: cannot be read")):
+            own.write_text(said)
+            refused = self.play("--prompt", own, expect=2).stderr
+            self.assertIn(expected, refused)
+            self.assertEqual(len(refused.splitlines()), 1, refused)
+        self.assertIn("--prompt, --reply-timeout, --concurrency and --any-served: expected --answers openai with them",
+                      self.call(*self.run_it, "--prompt", own, expect=2).stderr)
+
     def test_the_request_is_part_of_what_the_answers_are(self):
         self.server.refuses_temperature = True
         self.play("--request", '{"temperature": null}')

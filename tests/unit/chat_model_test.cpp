@@ -12,6 +12,8 @@
 #include <set>
 #include <thread>
 
+#include <lgabench/core/hash.hpp>
+
 #include "chat_server.hpp"
 
 namespace lgabench {
@@ -652,6 +654,63 @@ TEST(Prompt, AsksOfTheTargetOrTheObstacleAndFillsInEachPlaceOnce) {
               "Could the target object have the object type \"pan\"?");
   EXPECT_EQ(p.user.find("{group}"), std::string::npos);
   EXPECT_EQ(prompt.version().size(), 64u);
+}
+
+TEST(Prompt, OneOfOnesOwnHasEachPlaceholderAndNoOther) {
+  const fs::path file = fs::path(testing::TempDir()) / "prompt_of_ones_own.txt";
+  const std::string whole =
+      "Types {object_types}, looks {textures}.\n---\n\"{command}\": {about}, {group} {candidate}?";
+  const auto refused = [&](const std::string& text) {
+    write_file(file, text);
+    return message_of<InputError>([&] { read_prompt(file); }).substr(file.string().size());
+  };
+  write_file(file, whole + " {\"json\": {}}");
+  const PromptTemplate own = PromptTemplate::of_text(read_prompt(file));
+  EXPECT_EQ(own.version(), sha256_file(file));
+  EXPECT_SAYS(own.fill(command, space, {{}, {}, "pan"}).user, "the target object, object type pan? {\"json\": {}}");
+  EXPECT_EQ(refused(""),
+            ": expected a prompt with {object_types}, {textures}, {command}, {about}, {group}, {candidate}, "
+            "the file is empty");
+  EXPECT_SAYS(refused(" \n"), "the file is empty");
+  EXPECT_EQ(refused("{object_types}{command}\n---\n{about} {group}"), ": expected {textures}, {candidate} in it too");
+  EXPECT_EQ(refused("\n" + whole + "{colour}"),
+            ": line 4: expected {object_types}, {textures}, {command}, {about}, "
+            "{group}, {candidate}, got {colour}");
+  EXPECT_EQ(refused("{object_types}{textures}{command}{about}{group}{candidate}"),
+            ": expected a line --- between system and user prompt");
+  EXPECT_EQ(refused(whole + "\xff"), ": expected UTF-8");
+  EXPECT_SAYS(refused(whole + std::string(1 << 16, ' ')), "65536");
+}
+
+// A cassette's replies are to one prompt, and it says to which.
+TEST_F(Chat, AnotherPromptTakesAnotherCassette) {
+  const std::string text = "{object_types}{textures}\n---\n{command}{about}{group}{candidate}";
+  struct Yes : ChatClient {
+    ChatReply complete(const Json&) override { return {"Final answer: yes", 1, 1}; }
+  } yes;
+  const auto ask = [&](const std::string& prompt, ChatClient* client, const fs::path& file) {
+    Cassette cassette(file);
+    ChatOptions options{client ? to_text(asked_model("m", "", prompt)) : cassette.only_model()};
+    if (client) options.prompt = prompt;
+    ChatLanguageModel model(cassette, client, options);
+    model.answer(command, space, {{{}, {}, "heart"}, {{}, {}, "star"}});
+    return model.model();
+  };
+  const std::string named = "m (prompt " + sha256(text) + ")";
+  EXPECT_EQ(to_text(read_asked_model(named)), named);
+  EXPECT_EQ(ask(text, &yes, tape()), named);
+  EXPECT_EQ(ask(text, nullptr, tape()), named) << "the cassette has the words";
+  const std::string first = read_file(tape());
+  const Json lines = parse_json_lines(first, "tape");
+  EXPECT_EQ(lines.at(0).at("prompt"), text);
+  EXPECT_FALSE(lines.at(1).contains("prompt"));
+  const auto other = [&](const std::string& prompt) {
+    return message_of<InputError>([&] { ask(prompt, &yes, tape()); });
+  };
+  EXPECT_SAYS(other(""), "expected replies to lgabench's own prompt, it has those to the prompt " + sha256(text));
+  EXPECT_SAYS(other(text + "!"), "expected replies to the prompt " + sha256(text + "!"));
+  write_file(tape(), first.substr(first.find('\n') + 1) + first);
+  EXPECT_SAYS(message_of<InputError>([&] { Cassette cassette(tape()); }), "line 2: /prompt: expected the first line's");
 }
 
 // What the server says to the question what the command means, by the number of its asking.

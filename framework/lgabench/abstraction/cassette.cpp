@@ -47,6 +47,7 @@ void fields(CassetteLine& line, Fields& field) {
   field("reply_tokens", reply.reply_tokens, apart);
   field("served", reply.served, when(!reply.served.empty()));
   field("day", reply.day, when(!reply.day.empty()));
+  field("prompt", line.prompt, when(!line.prompt.empty()));
   for (const char* word : {"served", "day"})
     if (field.reading() && field.reading()->has(word)) read_word(field.reading()->at(word));
 }
@@ -63,8 +64,12 @@ bool Cassette::read() {
     const std::string place = fmt::format("{}: line {}", file_.string(), ++lines_);
     const Json json = parse_json(std::string_view(text).substr(size_, end - size_), place);
     const JsonReader reader(json, place);
-    auto [key, model, request, reply] = value_of<CassetteLine>(reader);
-    auto& served = served_[to_text(AskedModel::of(model, reader.at("request")))];
+    auto [key, model, request, reply, prompt] = value_of<CassetteLine>(reader);
+    if (lines_ == 1)
+      prompt_ = prompt;
+    else if (!prompt.empty() && prompt != prompt_)
+      reader.at("prompt").fail("the first line's: one text asks for all of a cassette's replies");
+    auto& served = served_[asked_text(model, reader.at("request"))];
     if (!reply.served.empty()) served.insert(reply.served);
     replies_[key] = std::move(reply);
   }
@@ -97,6 +102,34 @@ std::string Cassette::key(const Json& request, const std::string& template_versi
   return sha256(canonical({{"request", request}, {"template", template_version}}));
 }
 
+std::string Cassette::asked_text(const std::string& model, const JsonReader& request) const {
+  AskedModel asked = AskedModel::of(model, request);
+  if (!prompt_.empty()) asked.prompt = sha256(prompt_);
+  return to_text(asked);
+}
+
+std::string Cassette::prompt() const {
+  const std::lock_guard lock(mutex_);
+  return prompt_;
+}
+
+void Cassette::expect_prompt(const std::string& text) {
+  const std::lock_guard lock(mutex_);
+  expected_prompt_ = text;
+  expect_same_prompt();
+}
+
+void Cassette::expect_same_prompt() const {
+  const auto named = [](const std::string& text) {
+    return text.empty() ? std::string("lgabench's own prompt") : fmt::format("the prompt {}", sha256(text));
+  };
+  if (lines_ > 0 && prompt_ != expected_prompt_)
+    throw InputError(
+        fmt::format("{}: expected replies to {}, it has those to {}; give another --cassette, or the same "
+                    "--prompt",
+                    file_.string(), named(expected_prompt_), named(prompt_)));
+}
+
 std::optional<ChatReply> Cassette::find(const std::string& key) const {
   const std::lock_guard lock(mutex_);
   const auto found = replies_.find(key);
@@ -116,14 +149,17 @@ void ChatReply::add(const ChatReply& later) {
 void Cassette::add(const std::string& key, const Json& request, const ChatReply& reply, bool any_served) {
   const std::string model = request.at("model");
   const std::lock_guard lock(mutex_);
-  const std::string asked = to_text(AskedModel::of(model, JsonReader(request, "request")));
+  expect_same_prompt();
+  const bool first = lines_ == 0;
+  if (first) prompt_ = expected_prompt_;
+  const std::string asked = asked_text(model, JsonReader(request, "request"));
   if (const auto before = served_.find(asked); before != served_.end() && !any_served && !reply.served.empty() &&
                                                !before->second.empty() && before->second.count(reply.served) == 0)
     throw MethodError(fmt::format(
         "the server now names its model \"{}\", the replies in {} are of \"{}\"; give another --cassette, or "
         "--any-served to keep the replies of both",
         reply.served, file_.string(), fmt::join(before->second, "\", \"")));
-  const std::string bytes = canonical(json_of(CassetteLine{key, model, request, reply})) + '\n';
+  const std::string bytes = canonical(json_of(CassetteLine{key, model, request, reply, first ? prompt_ : ""})) + '\n';
   append_file(file_, bytes);
   size_ += bytes.size();
   ++lines_;

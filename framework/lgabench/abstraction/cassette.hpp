@@ -33,6 +33,7 @@ struct CassetteLine {
   std::string key, model;
   Json request;
   ChatReply reply;
+  std::string prompt{};  // of the first line: the text that asked in place of prompts/selection.txt, "" for none
 };
 
 /// A server's name for its model, or a day: at most 200 bytes in a line. @throws InputError
@@ -70,6 +71,12 @@ class Cassette {
   /// model than those before to this model and request, unless `any_served`.
   void add(const std::string& key, const Json& request, const ChatReply& reply, bool any_served = false);
 
+  /// The text that asked its replies, as read_prompt() has it; "" where it was lgabench's own or there are none yet.
+  std::string prompt() const;
+  /// Says which text asks those to come: the first of them keeps it. @throws InputError where another one asked those
+  /// that are there.
+  void expect_prompt(const std::string& text);
+
   /// Where it lies.
   const std::filesystem::path& file() const { return file_; }
   /// Seconds that a reply took, on the mean; 0 where there is none.
@@ -80,11 +87,16 @@ class Cassette {
   std::string only_model() const;
 
  private:
+  // These expect the lock.
+  std::string asked_text(const std::string& model, const JsonReader& request) const;
+  void expect_same_prompt() const;
+
   bool read();  // reads lines that were added since; whether all of them are whole
 
   std::filesystem::path file_;
   std::size_t size_ = 0;  // of what was read
   int lines_ = 0;
+  std::string prompt_, expected_prompt_;  // of the first line; of those to come
   mutable std::mutex mutex_;
   std::map<std::string, ChatReply> replies_;
   std::map<std::string, std::set<std::string>> served_;  // by who was asked: to_text()

@@ -59,7 +59,14 @@ ChatLanguageModel::ChatLanguageModel(Cassette& cassette, ChatClient* client, Cha
     : cassette_(cassette),
       client_(client),
       options_(std::move(options)),
-      asked_model_(read_asked_model(options_.model)) {}
+      asked_model_(read_asked_model(options_.model)) {
+  if (options_.prompt.empty() && !asked_model_.prompt.empty()) options_.prompt = cassette.prompt();
+  cassette.expect_prompt(options_.prompt);
+  if (!options_.prompt.empty()) template_ = PromptTemplate::of_text(options_.prompt);
+  if (!asked_model_.prompt.empty() && asked_model_.prompt != template_.version())
+    throw InputError(fmt::format("{}: expected replies to the prompt {}, it has none", cassette.file().string(),
+                                 asked_model_.prompt));
+}
 
 // The picture stands in the place of its hash.
 Json ChatLanguageModel::Request::sent() const {

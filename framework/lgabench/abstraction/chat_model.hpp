@@ -56,6 +56,7 @@ struct ChatOptions {
   std::function<void(const std::string&)> waiting = {};   // told, in a line, what the model waits for; likewise
   std::function<void(bool begins)> in_line = {};          // told where the model waits for another process that asks
   bool any_served = false;                                // as of Cassette::add()
+  std::string prompt{};       // read_prompt()'s, in place of selection.txt; "": the cassette's, where the model has one
   bool expects_read = false;  // mean() and hypotheses() throw Unread or Hopeless where they would be empty otherwise
 };
 
@@ -67,6 +68,7 @@ Json messages_of(const Prompt& prompt);
 class ChatLanguageModel : public LanguageModel {
  public:
   /// Both are borrowed and must outlive the model; `client` may be nullptr: then the cassette must hold every reply.
+  /// @throws InputError where another prompt asked the cassette's replies.
   ChatLanguageModel(Cassette& cassette, ChatClient* client, ChatOptions options);
 
   /// A question whose reply has no final answer is asked up to three times, until the reply repeats itself; one whose
@@ -125,7 +127,7 @@ class ChatLanguageModel : public LanguageModel {
   ChatClient* client_;
   ChatOptions options_;
   AskedModel asked_model_;
-  PromptTemplate template_{"selection.txt"}, of_meaning_{"meaning.txt"}, of_hypotheses_{"hypotheses.txt"};
+  PromptTemplate template_, of_meaning_{"meaning.txt"}, of_hypotheses_{"hypotheses.txt"};
   int asked_ = 0, without_answer_ = 0;
   struct Reading {
     bool any = false;

@@ -1,5 +1,6 @@
 // What a language model is asked.
 #pragma once
+#include <filesystem>
 #include <string>
 
 #include <lgabench/core/language_model.hpp>
@@ -18,6 +19,9 @@ class PromptTemplate {
  public:
   /// @throws InputError where the file is missing or lacks a part.
   explicit PromptTemplate(const std::string& file = "selection.txt");
+  /// Of a text, as read_prompt() returns it, from `place`; its version is the text's SHA-256. @throws InputError
+  /// likewise
+  static PromptTemplate of_text(const std::string& text, const std::string& place = "--prompt");
 
   /// The messages that ask this question about the command. The feature space is told in full.
   Prompt fill(const Command& command, const FeatureSpace& space, const Question& question) const;
@@ -27,8 +31,15 @@ class PromptTemplate {
   const std::string& version() const { return version_; }
 
  private:
+  PromptTemplate(const std::string& text, const std::string& place);
+
   Prompt text_;
   std::string version_;
 };
+
+/// A text of one's own in place of selection.txt: it has a line --- between system and user prompt, and each of
+/// selection.txt's six placeholders. @throws InputError, with file and line, for another text, an empty one, and one
+/// above 64 KiB.
+std::string read_prompt(const std::filesystem::path& file);
 
 }  // namespace lgabench

@@ -59,6 +59,7 @@ Answers answers_for(const CellJob& job, const Scenario& scenario, ChatClient* se
     options.max_queries = live.max_queries;
     options.concurrency = live.concurrency;
     options.any_served = live.any_served;
+    options.prompt = live.prompt;
     options.in_line = in_line;
     options.waiting = [](const std::string& why) { to_stderr("{}\n", one_line(why)); };
     answers.cassette = std::make_unique<Cassette>(live.cassette);

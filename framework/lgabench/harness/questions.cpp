@@ -25,7 +25,9 @@ std::string Questions::text() const {
 
 Questions count_questions(const LiveModel& live, const std::string& model, const std::vector<Json>& scenarios) {
   Cassette cassette(live.cassette);
-  const ChatLanguageModel lm(cassette, nullptr, {model});
+  ChatOptions options{model};
+  options.prompt = live.prompt;
+  const ChatLanguageModel lm(cassette, nullptr, options);
   Questions counted{0, 0, live.concurrency, cassette.mean_seconds()};
   std::set<std::string> seen;
   for (const Json& json : scenarios) {

@@ -60,6 +60,7 @@ static void fields(LiveModel& live, Fields& field) {
   field("reply_timeout_s", live.reply_timeout_s, within(1, 1 << 30));
   field("concurrency", live.concurrency, within(1, 64));
   field("any_served", live.any_served);
+  field("prompt", live.prompt, when(!live.prompt.empty()));
 }
 
 static void fields(CellJob& job, Fields& field) {

@@ -30,6 +30,7 @@ struct LiveModel {
   long reply_timeout_s = OpenAiOptions().timeout_s;
   int concurrency = 4;      // questions under way at once; cells take turns
   bool any_served = false;  // as of Cassette::add()
+  std::string prompt{};     // as in ChatOptions
 };
 
 /// lgabench-worker cell

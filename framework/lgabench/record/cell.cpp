@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include <lgabench/abstraction/asked_model.hpp>
 #include <lgabench/abstraction/prompt.hpp>
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
@@ -135,7 +136,10 @@ Json data_hashes(const Scenario& scenario, const AnswerSource& answers, const Re
               {"embeddings", folder_hash("embeddings")}};
   const std::string& environment = scenario.environment->id();
   if (fs::is_directory(data / environment)) hashes["environment"] = folder_hash(environment);
-  if (std::holds_alternative<LiveAnswers>(answers)) hashes["prompt"] = PromptTemplate().version();
+  if (const auto* live = std::get_if<LiveAnswers>(&answers)) {
+    const std::string given = read_asked_model(live->model).prompt;
+    hashes["prompt"] = given.empty() ? PromptTemplate().version() : given;
+  }
   if (const fs::path file = reader_file(environment, reading); !file.empty()) hashes["reader"] = shipped_sha256(file);
   return hashes;
 }

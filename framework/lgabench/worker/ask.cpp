@@ -30,6 +30,7 @@ void ask_all(const JsonReader& reader, const Messages& messages) {
   std::vector<std::string> unanswered;
   ChatOptions options{job.model, job.live.concurrency, job.live.max_queries};
   options.any_served = job.live.any_served;
+  options.prompt = job.live.prompt;
   options.waiting = waiting;
   options.progress = [&](int asked, int of_command) {
     const std::lock_guard lock(one_at_a_time);

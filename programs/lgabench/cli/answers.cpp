@@ -26,10 +26,12 @@ namespace {
 const std::vector<std::string> forms{"flat", "structured"};
 
 struct AnswersArguments {
-  std::string suite, form = forms.front(), model, request;
+  std::string suite, form = forms.front(), model, request, prompt;
   fs::path questions, from, cassette;
   bool batch = false, any_served = false;
 };
+
+std::string prompt_of(const AnswersArguments& a) { return a.prompt.empty() ? "" : read_prompt(a.prompt); }
 
 template <class Use>
 void with_each_command(const std::string& suite_id, Use&& use) {
@@ -58,7 +60,9 @@ Json batch_line(const AnswersArguments& a, const AskedModel& model, const std::s
 void write_questions(const AnswersArguments& a) {
   const bool structured = a.form == "structured";
   const AskedModel model = a.batch ? asked_model(a.model, a.request) : AskedModel{};
-  const PromptTemplate yes_or_no, of_meaning("meaning.txt");
+  const std::string own = prompt_of(a);
+  const PromptTemplate yes_or_no = own.empty() ? PromptTemplate() : PromptTemplate::of_text(own),
+                       of_meaning("meaning.txt");
   std::string lines;
   std::set<std::string> seen;
   with_each_command(a.suite, [&](const Command& command, const FeatureSpace& space) {
@@ -173,7 +177,9 @@ class GivenReplies : public ChatClient {
 void keep_replies(const AnswersArguments& a) {
   GivenReplies replies(a.from);
   Cassette cassette(a.cassette);
-  ChatOptions options{to_text(asked_model(a.model, a.request))};
+  const std::string prompt = prompt_of(a);
+  ChatOptions options{to_text(asked_model(a.model, a.request, prompt))};
+  options.prompt = prompt;
   options.concurrency = 1;
   options.any_served = a.any_served;
   ChatLanguageModel model(cassette, &replies, options);
@@ -228,6 +234,7 @@ void add_answers(CLI::App& app, int& exit) {
       ->needs(from);
   verb.option("--model MODEL", a->model, "The model that replied; with --batch the one to ask");
   verb.option("--request JSON", a->request, "A JSON merge patch applied to each request, as in lgabench select");
+  add_prompt(verb, a->prompt);
   verb->footer(
       "A question without an answer is named and left out. A reply whose meaning cannot be read selects nothing.\n"
       "docs/language-models.md says how an evaluation harness asks.\nExample: lgabench answers words --form structured "

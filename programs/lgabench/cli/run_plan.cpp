@@ -187,20 +187,23 @@ Json participant_hashes(const std::vector<Participant>& participants) {
 // what cells say of it.
 std::optional<LiveModel> live_model(const RunArguments& a, AnswerSource& answers, Json& about) {
   if (!std::holds_alternative<LiveAnswers>(answers)) {
-    if (!a.model.empty() || !a.cassette.empty() || a.max_queries >= 0 || !a.request.empty() ||
+    if (!a.model.empty() || !a.cassette.empty() || a.max_queries >= 0 || !a.request.empty() || !a.prompt.empty() ||
         a.reply_timeout_s != OpenAiOptions().timeout_s || a.concurrency != LiveModel().concurrency || a.any_served)
       throw InputError(
-          "--model, --cassette, --max-queries, --request, --reply-timeout, --concurrency and --any-served: expected "
-          "--answers openai with them");
+          "--model, --cassette, --max-queries, --request, --prompt, --reply-timeout, --concurrency and --any-served: "
+          "expected --answers openai with them");
     return std::nullopt;
   }
   if (a.model.empty() || a.cassette.empty() || one_line(a.model) != a.model)
     throw InputError("--answers openai: expected --model MODEL and --cassette FILE too");
-  const Cassette readable(a.cassette);
-  const std::string model = to_text(asked_model(a.model, a.request));
-  answers = LiveAnswers{model};
-  about = {{"model", model}, {"provider", provider(openai_from_environment())}, {"prompt", PromptTemplate().version()}};
-  return LiveModel{a.cassette, true, a.max_queries, a.reply_timeout_s, a.concurrency, a.any_served};
+  const std::string prompt = a.prompt.empty() ? "" : read_prompt(a.prompt);
+  Cassette(a.cassette).expect_prompt(prompt);
+  const AskedModel model = asked_model(a.model, a.request, prompt);
+  answers = LiveAnswers{to_text(model)};
+  about = {{"model", to_text(model)},
+           {"provider", provider(openai_from_environment())},
+           {"prompt", model.prompt.empty() ? PromptTemplate().version() : model.prompt}};
+  return LiveModel{a.cassette, true, a.max_queries, a.reply_timeout_s, a.concurrency, a.any_served, prompt};
 }
 
 // Where --resume goes on: where the run would be, or was with another build. It begins none.
@@ -338,6 +341,7 @@ void add_run_options(Verb& verb, RunArguments& a) {
               "With --answers openai: the most questions that a cell may ask the server; -1: no limit",
               CLI::Range(-1, 1000000), with_default, rare);
   add_server(verb, a.request, a.reply_timeout_s, a.any_served, rare);
+  add_prompt(verb, a.prompt, rare);
   verb.option("--concurrency N", a.concurrency, "With --answers openai: how many questions to ask at once",
               CLI::Range(1, 64), with_default, rare);
   verb.option("--truth released|printed", a.truth,

@@ -14,7 +14,7 @@ namespace lgabench::cli {
 
 struct RunArguments {
   std::string suite, preset, python = "python3", answers = "recorded", truth = "released", humans, out, cache, debug,
-                             shard = "1/1", model, cassette, request, train_on;
+                             shard = "1/1", model, cassette, request, prompt, train_on;
   Words methods, engines, scenarios, layouts, demonstrations, seeds, settings, selection_errors, names, segments, axes,
       arms;
   std::vector<fs::path> plugin_path;

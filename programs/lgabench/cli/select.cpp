@@ -33,7 +33,7 @@ namespace {
 
 struct SelectArguments {
   std::string command, suite, answers = "recorded", truth = "released", task = "pick_and_place", space, model, cassette,
-                              request, best_product;
+                              request, prompt, best_product;
   long reply_timeout_s = OpenAiOptions().timeout_s;
   int concurrency = 4, max_queries = -1;
   bool json = false, score = false, show_prompt = false, any_served = false;
@@ -96,18 +96,21 @@ Answerer make_answerer(const SelectArguments& a) {
   if (!live && !a.cassette.empty()) throw InputError("--cassette: expected --answers openai with it");
   if (file.empty() && !a.model.empty())
     throw InputError(fmt::format("--model: expected --answers openai or cassette:FILE with it, not {}", a.answers));
-  if (!live &&
-      (a.max_queries >= 0 || !a.request.empty() || a.reply_timeout_s != OpenAiOptions().timeout_s || a.any_served))
-    throw InputError("--max-queries, --request, --reply-timeout and --any-served: expected --answers openai with them");
+  if (!live && (a.max_queries >= 0 || !a.request.empty() || !a.prompt.empty() ||
+                a.reply_timeout_s != OpenAiOptions().timeout_s || a.any_served))
+    throw InputError(
+        "--max-queries, --request, --prompt, --reply-timeout and --any-served: expected --answers openai with them");
   if (std::holds_alternative<NoAnswers>(source) && !a.score)
     throw InputError("--answers none: expected --score with it");
   if (file.empty()) return answerer;
   answerer.cassette = std::make_unique<Cassette>(file);
   if (live && a.model.empty()) throw InputError("--model: expected one with --answers openai");
-  ChatOptions options{live ? to_text(asked_model(a.model, a.request)) : kept_model(*answerer.cassette, a.model),
+  const std::string prompt = a.prompt.empty() ? "" : read_prompt(a.prompt);
+  ChatOptions options{live ? to_text(asked_model(a.model, a.request, prompt)) : kept_model(*answerer.cassette, a.model),
                       a.concurrency,
                       a.max_queries,
                       {}};
+  options.prompt = prompt;
   options.any_served = a.any_served;
   options.expects_read = a.score;
   if (live) {
@@ -239,9 +242,9 @@ void select(const Asked& asked, LanguageModel* answering, const SelectArguments&
 }
 
 // What a server would be asked first about the command: whether the target could have the space's first object type.
-void show_prompt(const Asked& asked) {
+void show_prompt(const Asked& asked, const PromptTemplate& words) {
   const Question first = feature_questions(asked.command, asked.space).front();
-  const Prompt prompt = PromptTemplate().fill(asked.command, asked.space, first);
+  const Prompt prompt = words.fill(asked.command, asked.space, first);
   to_stdout("{}\n---\n{}", prompt.system, prompt.user);
 }
 
@@ -316,6 +319,7 @@ void add_select(CLI::App& app, int&) {
   verb.option("--concurrency N", arguments->concurrency, "How many questions to ask at once", CLI::Range(1, 64),
               with_default);
   add_server(verb, arguments->request, arguments->reply_timeout_s, arguments->any_served);
+  add_prompt(verb, arguments->prompt);
   verb.option("--max-queries N", arguments->max_queries, "The most questions to ask a server; -1: no limit",
               CLI::Range(-1, 1000000), with_default);
   verb->footer(
@@ -337,7 +341,9 @@ void add_select(CLI::App& app, int&) {
       throw InputError("--arms: expected --names or --segments with it");
     if (!arguments->names.empty() || !arguments->segments.empty()) return score_reading(*arguments);
     if (arguments->show_prompt) {
-      for (const Asked& asked : find_commands(*arguments)) show_prompt(asked);
+      const std::string& file = arguments->prompt;
+      const PromptTemplate words = file.empty() ? PromptTemplate() : PromptTemplate::of_text(read_prompt(file));
+      for (const Asked& asked : find_commands(*arguments)) show_prompt(asked, words);
       return;
     }
     const Answerer answerer = make_answerer(*arguments);

@@ -155,6 +155,17 @@ void add_python(Verb& verb, std::string& python, More... more) {
   verb.option("--python PROGRAM", python, "The interpreter for plugins in Python", with_default, more...);
 }
 
+/// --prompt, as every verb has it that asks a server, or reads what it replied.
+template <class... More>
+void add_prompt(Verb& verb, std::string& file, More... more) {
+  verb.option(
+      "--prompt FILE", file,
+      "A text of your own that asks yes or no about each name, in place of share/lgabench/prompts/selection.txt: "
+      "a line --- between system and user prompt, and {object_types}, {textures}, {command}, {about}, {group} "
+      "and {candidate} in it",
+      more...);
+}
+
 /// How a server is asked. --ca-file is for the workers too, which read the variable.
 template <class... More>
 void add_server(Verb& verb, std::string& request, long& reply_timeout_s, bool& any_served, More... more) {
