@@ -12,6 +12,7 @@ import unittest
 from answers_test import SECRET, Server
 from case import BUILD, command_line, read_entry
 from leaderboard_test import META, SUITE, Board
+from python_test import PYTHON, has
 
 PRESET = {"scene_seed": 77, "test_scenes": "per_seed"}
 SMALL = {**SUITE, "methods": ["lga"], "demonstrations": [2], "seeds": [0], "presets": {"abstraction": PRESET}}
@@ -219,6 +220,98 @@ class AnswersAlone(Board):
                     self.assertEqual(len(lines), 1, lines)
                     self.assertIn(f"board/tracks.json: {place}", lines[0])
         self.assertFalse((self.dir / "board/README.md").exists())
+
+
+TABLE = '''
+from lgabench_method import FeatureSet, Selection, select_features
+
+TRUTH = {}
+
+class Table:
+    """Knows the published commands' truths, and asks for the form alone."""
+    version, summary = "1", "a table of truths"
+
+    def select(self, command, space, services):
+        asked = select_features(command, space, services.lm)
+        truth = TRUTH.get(command.utterance)
+        return Selection(FeatureSet(*truth) if truth else FeatureSet(list(space.object_types), list(space.textures)),
+                         None, asked.provenance, asked.source)
+'''
+
+
+class FreshCommands(Board):
+    """A method that maps the published commands to their truths, beside LGA on the same answers."""
+    NONCE = "5eed" * 8
+
+    def prepare(self):
+        super().prepare()
+        (self.dir / "data/suites/tiny.json").write_text(json.dumps(SMALL))
+        (self.dir / "board").mkdir()
+        (self.dir / "board/tracks.json").write_text(json.dumps({**TRACKS, "frozen": {"tiny-abstraction": "recorded"}}))
+        truths = {}
+        for scenario in SMALL["scenarios"]:
+            space = json.loads((BUILD / "share/lgabench/spaces/tabletop.json").read_text())
+            command = command_of(scenario)
+            truths[command["utterance"]] = [space[part] if names == "ALL" else names for part, names in
+                                            ((part, command["truth"]["target"][part]) for part in ("object_types", "textures"))]
+        (self.dir / "table.py").write_text(TABLE.replace("TRUTH = {}", f"TRUTH = {truths!r}"))
+
+    def play(self, out):
+        self.call("run", "tiny", "--preset", "abstraction", "--methods", "selected_by:lga,selected_by:table.py:Table",
+                  "--no-reference", "--python", PYTHON, "--out", out)
+
+    def verify(self, *words, expect=0):
+        return self.leaderboard("verify", "--by", "B. Maintainer", "--methods", "table.py:Table", "--python", PYTHON, *words, expect=expect)
+
+    def standings(self):
+        self.leaderboard("build")
+        rows = [line.split("|") for line in (self.dir / "board/README.md").read_text().splitlines() if "entries/" in line]
+        return {re.search(r"entries/(\w+)/", "|".join(row))[1]: (row[1].strip(), row[5].strip()) for row in rows}
+
+    @unittest.skipUnless(has(PYTHON, "numpy"), "no NumPy")
+    def test_a_table_of_published_truths_loses_its_rank(self):
+        self.take_run()
+        self.leaderboard("add", "run", "--entry", "me.json")
+        self.verify()
+        for file in (self.dir / "board").glob("entries/*/*/*/verifications.jsonl"):
+            self.leaderboard("vouch", file.parent.parent.name, "1")
+        before = self.standings()
+        self.assertEqual(before["table"][0], "1")
+        self.assertNotEqual(before["lga"][0], "–")
+        self.assertIn("never on fresh scenes", before["table"][1])
+        said = self.verify("--fresh-commands", self.NONCE, expect=1).stdout
+        self.assertRegex(said, r"(?m)^DIFFERS entries/table/\S+: 0 of 40 drawn commands exact \(lga: 40\), 2 of 2 published \(nonce 5eed")
+        self.assertRegex(said, r"(?m)^agrees  entries/lga/\S+: 40 of 40 drawn commands exact \(lga: 40\), \d of 2 published")
+        for file in (self.dir / "board").glob("entries/*/*/*/verifications.jsonl"):
+            line = json.loads(file.read_text().splitlines()[-1])
+            self.assertEqual((line["kind"], line["commands"], line["nonce"]), ("commands", 40, self.NONCE))
+            self.assert_as_schema("verifications", line)
+        self.assertIn("claimed by B. Maintainer: differs on fresh commands", self.standings()["table"][1])
+        for file in (self.dir / "board").glob("entries/*/*/*/verifications.jsonl"):
+            self.leaderboard("vouch", file.parent.parent.name, "2")
+        after = self.standings()
+        self.assertEqual(after["lga"][0], "1")
+        self.assertEqual(after["table"][0], "–")
+        self.assertIn("differs on fresh commands", after["table"][1])
+        self.assertIn("fresh commands", after["lga"][1])
+        self.leaderboard("check")
+
+        # A nonce that anybody may know; what is none; too few; lines whose counts say otherwise.
+        used = self.verify("--fresh-commands", self.NONCE, expect=2).stderr
+        self.assertRegex(used, rf"^lgabench: --fresh-commands: {self.NONCE} was used, in \S+/verifications.jsonl; expected a new one\n$")
+        self.assertIn("expected 32 hexadecimal digits", self.verify("--fresh-commands", "5eed", expect=2).stderr)
+        self.assertIn("--commands", self.verify("--fresh-commands", "a" * 32, "--commands", "19", expect=2).stderr)
+        forged = next((self.dir / "board").glob("entries/table/*/*/verifications.jsonl"))
+        lines = forged.read_text().splitlines()
+        forged.write_text("\n".join([*lines, json.dumps({**json.loads(lines[-1]), "nonce": "b" * 32, "passed": True})]) + "\n")
+        self.assertIn("/passed: expected false, by its counts", self.leaderboard("check", expect=1).stderr)
+
+    def test_a_row_that_selects_nothing_has_no_commands_to_draw(self):
+        self.prepare()
+        self.call("run", "tiny", "--preset", "abstraction", "--methods", "gcbc_seg", "--set", "*.epochs=2", "--no-reference", "--out", "none")
+        self.leaderboard("add", "none", "--entry", "me.json")
+        refused = self.leaderboard("verify", "--by", "B. Maintainer", "--fresh-commands", self.NONCE, expect=2).stderr
+        self.assertRegex(refused, r"^not verified: entries/gcbc_seg/\S+: no command to draw: the row selects nothing\n")
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@
 #include <lgabench/leaderboard/add.hpp>
 #include <lgabench/leaderboard/archive.hpp>
 #include <lgabench/leaderboard/check.hpp>
+#include <lgabench/leaderboard/fresh_commands.hpp>
 #include <lgabench/leaderboard/pages.hpp>
 #include <lgabench/leaderboard/recompute.hpp>
 #include <lgabench/leaderboard/scenes.hpp>
@@ -28,7 +29,7 @@ namespace lgabench::cli {
 namespace {
 
 struct LeaderboardArguments {
-  std::string action, what, line, about, against, reason, python = "python3";
+  std::string action, what, line, about, against, reason, nonce, python = "python3";
   fs::path board = "results/leaderboard", archive;
   Words rows, methods;
   std::vector<fs::path> plugin_path, documents;
@@ -81,7 +82,27 @@ std::string fresh_words(const leaderboard::Entry& entry, const Json& line) {
   for (const leaderboard::FreshEstimate& one : estimates)
     if (!one.arm.empty() && estimates.size() > 1 && one.differs())
       text += fmt::format("; arm {} differs: {}", one.arm, words(one));
+  if (line.at("passed").get<bool>())
+    text += fmt::format("; a gain of {:.3f} would be found four times in five", leaderboard::smallest_found(estimates));
   return text;
+}
+
+std::string found_words(const leaderboard::Entry& entry, const Json& line) {
+  const std::string kind = line.at("kind");
+  return kind == "fresh"      ? fresh_words(entry, line)
+         : kind == "commands" ? leaderboard::fresh_commands_words(line)
+                              : replay_words(entry, line);
+}
+
+// @throws InputError where anybody may know what it draws: it stands in a verification.
+void expect_new(const std::string& nonce, const fs::path& board, const std::vector<fs::path>& entries) {
+  if (nonce.size() != 32 || nonce.find_first_not_of("0123456789abcdef") != nonce.npos)
+    throw InputError(fmt::format(
+        "--fresh-commands: expected 32 hexadecimal digits, as openssl rand -hex 16 prints them, got \"{}\"", nonce));
+  for (const fs::path& entry : entries)
+    if (const fs::path file = board / entry / "verifications.jsonl";
+        fs::exists(file) && read_file(file, Links::refused).find(nonce) != std::string::npos)
+      throw InputError(fmt::format("--fresh-commands: {} was used, in {}; expected a new one", nonce, file.string()));
 }
 
 // The plugins, and in `a` how many cells to compute at once.
@@ -95,6 +116,8 @@ Catalogue ready_to_compute(LeaderboardArguments& a) {
 // One line for each entry; a verification is recorded, whatever it says. Entries that cannot be verified stop no other.
 int verify(LeaderboardArguments a) {
   if (a.verify.by.empty()) throw InputError("leaderboard verify: expected --by NAME, who verifies");
+  a.verify.on_commands = !a.nonce.empty();
+  if (a.verify.on_commands) expect_new(a.nonce, a.board, leaderboard::entry_directories(a.board));
   const Catalogue catalogue = ready_to_compute(a);
   std::vector<fs::path> entries;
   if (!a.what.empty())
@@ -115,7 +138,8 @@ int verify(LeaderboardArguments a) {
             "{}: --fresh plays new scenes of the same commands; nobody is asked about other commands "
             "(docs/language-models.md)\n",
             entry.id());
-      line = leaderboard::verification(a.board, entry, leaderboard::new_nonce(), catalogue, a.verify);
+      line = leaderboard::verification(a.board, entry, a.nonce.empty() ? leaderboard::new_nonce() : a.nonce, catalogue,
+                                       a.verify);
     } catch (const Error& e) {  // a plugin that is not here, another version, a cell that the host failed
       to_stderr("not verified: {}: {}\n", directory.string(), one_line(e.what()));
       ++unverified;
@@ -125,11 +149,10 @@ int verify(LeaderboardArguments a) {
     leaderboard::add_verification(a.board, entry, *line);
     ++verified;
     const bool passed = line->at("passed");
-    const std::string found = a.verify.fresh ? fresh_words(entry, *line) : replay_words(entry, *line);
-    to_stdout("{} {}: {} (nonce {})\n", passed ? "agrees " : "DIFFERS", directory.string(), found,
+    to_stdout("{} {}: {} (nonce {})\n", passed ? "agrees " : "DIFFERS", directory.string(), found_words(entry, *line),
               line->at("nonce").get<std::string>());
     if (const std::size_t enough = leaderboard::enough_cells_of(entry);
-        !a.verify.fresh && line->at("cells").size() < enough)
+        line->at("kind") == "replay" && line->at("cells").size() < enough)
       to_stderr("Too few cells to count: nobody vouches for a replay of fewer than {} (--cells {})\n", enough, enough);
     else
       to_stderr("To make it count: lgabench leaderboard vouch {} {} --board {}\n", shell_line({entry.id()}),
@@ -203,8 +226,7 @@ int vouch(const LeaderboardArguments& a) {
     const leaderboard::Entry entry =
         leaderboard::read_entry(a.board, leaderboard::find_entry(a.board, a.what), &vouched);
     words = fmt::format("{} by {} on {}: {} {}", kind, line.at("by").get<std::string>(), when,
-                        line.at("passed").get<bool>() ? "agrees," : "DIFFERS,",
-                        kind == "fresh" ? fresh_words(entry, line) : replay_words(entry, line));
+                        line.at("passed").get<bool>() ? "agrees," : "DIFFERS,", found_words(entry, line));
   }
   to_stdout("vouched for {}: {}\n", one_line(words), leaderboard::line_hash(line));
   return ok;
@@ -286,7 +308,15 @@ void add_leaderboard(CLI::App& app, int& exit) {
   verb.below("verify and scenes");
   auto* cells = verb.option("--cells N", a->verify.cells, "verify: how many cells to play, chosen by a nonce drawn now",
                             CLI::Range(1, 1000000), with_default);
-  verb.option("--fresh", a->verify.fresh, "verify: play on new test scenes, and compare success")->excludes(cells);
+  auto* fresh = verb.option("--fresh", a->verify.fresh, "verify: play on new test scenes, and compare success");
+  fresh->excludes(cells);
+  auto* commands = verb.option("--fresh-commands NONCE", a->nonce,
+                               "verify: draw new commands from these 32 hexadecimal digits, which nobody knew before, "
+                               "and score what the method selects for them, on their truth as the answers");
+  commands->excludes(cells)->excludes(fresh);
+  verb.option("--commands N", a->verify.commands, "verify: how many commands to draw",
+              CLI::Range(leaderboard::fewest_commands, 1000), with_default)
+      ->needs(commands);
   verb.option("--by NAME", a->verify.by, "verify, supersede: your name, as the one who computes the cells");
   verb.option("--jobs N", a->jobs,
               "verify, scenes: cells to compute at once (default: one for each core that the job has)",

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include <lgabench/leaderboard/fresh_commands.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 
 namespace lgabench::leaderboard {
@@ -30,6 +31,7 @@ std::string why_not_ranked(const Entry& entry, const Track& track) {
   if (entry.identity.row.asks == "truth" || entry.identity.row.asks == "network")
     return "asks for the " + entry.identity.row.asks;
   if (entry.fresh() < 0) return "differs on fresh scenes";
+  if (entry.fresh_commands() < 0) return "differs on fresh commands";
   if (!entry.was_replayed()) return "not yet replayed";
   if (entry.replay_differed()) return "a replay differed";
   const std::set<std::string> provenances = provenances_of(entry);
@@ -41,7 +43,7 @@ std::string why_not_ranked(const Entry& entry, const Track& track) {
   return of_track.empty() ? entry.identity.conditions.why_not_ranked(track) : of_track;
 }
 
-std::vector<std::string> marks_of(const Entry& entry) {
+std::vector<std::string> marks_of(const Entry& entry, bool is_ranked) {
   std::vector<std::string> marks;
   if (entry.has_answers_as_submitted()) marks.emplace_back(as_submitted);
   const std::string confined = entry.evidence.front().at("confinement");
@@ -53,12 +55,23 @@ std::vector<std::string> marks_of(const Entry& entry) {
                                     [](const PlayedCell& cell) { return !cell.failed.empty(); });
   if (failed > 0) marks.push_back(fmt::format("{} cells failed", failed));
   if (entry.fresh() > 0) marks.emplace_back("fresh");
+  if (entry.fresh_commands() > 0) marks.emplace_back("fresh commands");
+  if (is_ranked && entry.fresh() == 0) marks.emplace_back(never_fresh);
+  if (const std::string why = why_exempt(entry); is_ranked && entry.identity.row.acts && !why.empty())
+    marks.push_back("no fresh commands: " + why);
   for (std::string& claim : claims(entry)) marks.push_back(std::move(claim));
   return marks;
 }
 
 std::vector<std::pair<std::string, std::string>> meanings_of_marks() {
-  return {{as_submitted,
+  return {{"fresh commands",
+           "its method was as exact for commands of the lexicon that nobody knew when it was submitted as it is here, "
+           "or as LGA is on the same answers."},
+          {"no fresh commands",
+           "no command tests whether the method has the published ones’ truths by heart: it selects nothing, selects "
+           "from demonstrations, or asks people."},
+          {never_fresh, "its success on scenes that nobody knew was not looked at."},
+          {as_submitted,
            "that file is used as it came. Nobody can ask whoever gave the answers again, and the truth of shipped "
            "commands is public, so the file may be a copy of it: the row has no rank."},
           {"the truth stands in for people",

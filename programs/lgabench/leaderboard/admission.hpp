@@ -17,14 +17,17 @@ bool is_in(const Entry& entry, Ranking ranking);
 /// Why the entry has no rank in a table of that track: "" where it has one.
 std::string why_not_ranked(const Entry& entry, const Track& track = {});
 
-/// What pages say of the entry beside its tier and why it has no rank.
-std::vector<std::string> marks_of(const Entry& entry);
+/// What pages say of the entry beside its tier and why it has no rank. `is_ranked`: where it has one.
+std::vector<std::string> marks_of(const Entry& entry, bool is_ranked);
 
 /// Reasons and marks that need an explanation, and that, as the board's pages list them.
 std::vector<std::pair<std::string, std::string>> meanings_of_marks();
 
 /// The mark of an entry whose answers are a file that its authors wrote, which may be a copy of the truth.
 inline constexpr const char* as_submitted = "answers as submitted";
+
+/// The mark of a row that was played on the board's scenes alone.
+inline constexpr const char* never_fresh = "never on fresh scenes";
 
 /// Where its Selections come from.
 std::set<std::string> provenances_of(const Entry& entry);

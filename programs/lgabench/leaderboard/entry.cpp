@@ -12,6 +12,7 @@
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/leaderboard/fields.hpp>
+#include <lgabench/leaderboard/fresh_commands.hpp>
 #include <lgabench/leaderboard/said.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/plugin/loader.hpp>
@@ -171,6 +172,13 @@ int Entry::fresh() const {
   if (lines.empty()) return 0;
   const std::vector<FreshEstimate> estimates = fresh_estimates(*this, lines);
   return std::any_of(estimates.begin(), estimates.end(), [](const auto& one) { return one.differs(); }) ? -1 : 1;
+}
+
+int Entry::fresh_commands() const {
+  std::vector<const Json*> lines;
+  for (const Json& line : verifications)
+    if (line.at("kind") == "commands" && counts(line)) lines.push_back(&line);
+  return lines.empty() ? 0 : knows_fresh_commands(lines) ? 1 : -1;
 }
 
 std::string Entry::spec() const {

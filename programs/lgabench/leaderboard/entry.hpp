@@ -113,6 +113,8 @@ struct Entry {
   /// What verifications on fresh scenes that count found, all together (fresh_estimates()): -1 where success differs in
   /// an arm or over all; else 1; 0 where none was made.
   int fresh() const;
+  /// What drawn commands that count found, all together (knows_fresh_commands()): likewise.
+  int fresh_commands() const;
   /// The row's id, and the options in which the preset would set it otherwise: what --methods takes.
   std::string spec() const;
 };

@@ -12,6 +12,7 @@
 #include <lgabench/drawn/draw.hpp>
 #include <lgabench/harness/recompute.hpp>
 #include <lgabench/leaderboard/answer_score.hpp>
+#include <lgabench/leaderboard/fresh_commands.hpp>
 #include <lgabench/leaderboard/played_cell.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 
@@ -185,6 +186,17 @@ Json played_fresh(const Entry& entry, const std::vector<std::size_t>& chosen, co
   return line;
 }
 
+// Who made a line, of what run.
+void sign(Json& line, const std::string& nonce, const RunRecord& run, const VerifyOptions& options) {
+  line.update({{"nonce", nonce},
+               {"by", options.by},
+               {"when", fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)))},
+               {"program", options.program},
+               {"build", run.build},
+               {"machine", run.machine},
+               {"confinement", run.confinement}});
+}
+
 }  // namespace
 
 Installed installed_as(const Entry& entry, const Catalogue& catalogue) {
@@ -219,6 +231,12 @@ std::optional<Json> verification(const fs::path& board, const Entry& entry, cons
                                  const Catalogue& catalogue, const VerifyOptions& options) {
   Installed installed = installed_as(entry, catalogue);
   expect_method(entry.identity.row, catalogue);
+  if (options.on_commands) {
+    std::optional<OnFreshCommands> scored = on_fresh_commands(entry, installed, nonce, catalogue, options);
+    if (!scored) return std::nullopt;
+    sign(scored->line, nonce, scored->run, options);
+    return std::move(scored->line);
+  }
   expect_own_score(board, entry, installed);
   const std::vector<std::size_t> chosen =
       options.fresh ? fresh_cells(entry, nonce) : chosen_cells(entry, entry.hash(), nonce, options.cells);
@@ -235,13 +253,7 @@ std::optional<Json> verification(const fs::path& board, const Entry& entry, cons
   const std::vector<PlayedCell> now = lines_of(plan, *recomputed, scratch);
   Json line = options.fresh ? played_fresh(entry, chosen, now, persons)
                             : replayed(entry, chosen, now, plan.cells, catalogue, run.processor());
-  line.update({{"nonce", nonce},
-               {"by", options.by},
-               {"when", fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)))},
-               {"program", options.program},
-               {"build", run.build},
-               {"machine", run.machine},
-               {"confinement", run.confinement}});
+  sign(line, nonce, run, options);
   if (options.fresh)
     line.update({{"scene_seed", installed.design.scene_seed},
                  {"demonstrations", entry.cells[chosen.front()].place.demonstrations},

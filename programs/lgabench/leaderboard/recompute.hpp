@@ -11,7 +11,9 @@ namespace lgabench::leaderboard {
 
 struct VerifyOptions {
   std::size_t cells = enough_cells;
-  bool fresh = false;       // play all scenarios on other test scenes instead
+  bool fresh = false;        // play all scenarios on other test scenes instead
+  bool on_commands = false;  // score Selections for so many drawn commands instead (fresh_commands.hpp)
+  int commands = 40;
   std::string by, program;  // who verifies, with what: as --version says
   PoolOptions pool;
 };
@@ -33,7 +35,8 @@ std::string new_nonce();
 /// A line of verifications.jsonl. Plays the cells that `nonce` chooses, confined and on a cache of their own; by
 /// statistics::verdict_of() it passes unless it differs, and the same bits are owed where owe_same_bits() of the
 /// entry's processor and this one. With `fresh`: fresh_cells(), on a scene seed that the nonce chooses as well; it
-/// passes where none of its fresh_estimates() differs. None where it was interrupted.
+/// passes where none of its fresh_estimates() differs. With `on_commands`: on_fresh_commands(). None where it was
+/// interrupted.
 /// @throws InputError where this installation cannot play the entry: another preset, another version of method or
 /// engine, a method that asks somebody else or has other options, a cell that the host failed. PluginError for a plugin
 /// that is not there.

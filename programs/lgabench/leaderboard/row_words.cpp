@@ -72,7 +72,7 @@ Span rank_span(const Standing& standing) {
 std::string tier_and_marks(const Standing& s) {
   std::vector<std::string> words{to_string(s.entry->tier())};
   if (!s.not_ranked.empty()) words.push_back(s.not_ranked);
-  for (std::string& mark : marks_of(*s.entry))
+  for (std::string& mark : marks_of(*s.entry, s.not_ranked.empty()))
     if (mark != s.not_ranked) words.push_back(std::move(mark));
   return fmt::format("{}", fmt::join(words, "; "));
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <ctime>
 #include <limits>
@@ -10,6 +11,7 @@
 
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/leaderboard/fresh_commands.hpp>
 #include <lgabench/statistics/statistics.hpp>
 
 namespace lgabench::leaderboard {
@@ -85,6 +87,8 @@ struct Sum {
 // What a line would give its entry, were it vouched for; "" where the entry, of that tier, has that already.
 std::string said(const Entry& entry, Tier now, bool is_fresh, const Json& line) {
   const bool passed = line.at("passed");
+  if (line.at("kind") == "commands")
+    return !passed ? "differs on fresh commands" : entry.fresh_commands() > 0 ? "" : "agrees on fresh commands";
   if (line.at("kind") == "fresh") return !passed ? "differs on fresh scenes" : is_fresh ? "" : "agrees on fresh scenes";
   if (!passed) return "a replay differed";
   const Tier tier = tier_of(entry, line);
@@ -124,18 +128,44 @@ statistics::Reproduction replay_verdict(const Entry& entry, const Json& line) {
 }
 
 void expect_verification(const JsonReader& line, const Entry& entry, const std::string& hash) {
-  line.only({"kind",          "nonce",      "cells",    "bit_identical", "flips",      "only_recorded",
-             "worse",         "better",     "episodes", "passed",        "by",         "when",
-             "program",       "build",      "machine",  "confinement",   "scene_seed", "demonstrations",
-             "training_seed", "difference", "low",      "high",          "successes",  "persons"});
+  line.only({"kind",
+             "nonce",
+             "cells",
+             "bit_identical",
+             "flips",
+             "only_recorded",
+             "worse",
+             "better",
+             "episodes",
+             "passed",
+             "by",
+             "when",
+             "program",
+             "build",
+             "machine",
+             "confinement",
+             "scene_seed",
+             "demonstrations",
+             "training_seed",
+             "difference",
+             "low",
+             "high",
+             "successes",
+             "persons",
+             "commands",
+             "exact",
+             "lga_exact",
+             "published",
+             "published_exact"});
   const std::string kind = line.at("kind").string(), nonce = line.at("nonce").string();
-  if (kind != "replay" && kind != "fresh") line.at("kind").fail("replay or fresh");
+  if (kind != "replay" && kind != "fresh" && kind != "commands") line.at("kind").fail("replay, fresh or commands");
   if (nonce.size() != 32 || nonce.find_first_not_of("0123456789abcdef") != std::string::npos)
     line.at("nonce").fail("32 hexadecimal digits");
   for (const char* text : {"by", "program", "confinement"})
     if (line.at(text).string().size() > most_words) line.at(text).fail(fmt::format("at most {} bytes", most_words));
   expect_date(line.at("when"));
   read_processor(line.at("machine"));
+  if (kind == "commands") return expect_fresh_commands(line);
   if (line.at("cells").strings().empty())
     line.at("cells").fail("at least one cell: without any, it says nothing about the entry");
   for (const char* count : {"bit_identical", "flips", "episodes"})
@@ -216,6 +246,14 @@ std::vector<FreshEstimate> fresh_estimates(const Entry& entry, const std::vector
   const std::vector<double> adjusted = statistics::holm(p);
   for (std::size_t i = 0; i < estimates.size(); ++i) estimates[i].p_holm = adjusted[i];
   return estimates;
+}
+
+double smallest_found(const std::vector<FreshEstimate>& estimates) {
+  const boost::math::normal normal;
+  const FreshEstimate& mean = estimates.back();
+  const double error = (mean.high - mean.low) / (2 * statistics::z_95);
+  return error * (boost::math::quantile(normal, 1 - .05 / 2 / static_cast<double>(estimates.size())) +
+                  boost::math::quantile(normal, .8));
 }
 
 std::vector<std::string> claims(const Entry& entry) {

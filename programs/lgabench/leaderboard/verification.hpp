@@ -37,6 +37,10 @@ struct FreshEstimate {
 /// @pre lines of kind fresh with /successes
 std::vector<FreshEstimate> fresh_estimates(const Entry& entry, const std::vector<const Json*>& lines);
 
+/// The smallest loss on other scenes, of the mean over arms, that a line finds in four of five draws (two-sided, p .05,
+/// the strictest of Holm's steps): what "agrees" leaves open.
+double smallest_found(const std::vector<FreshEstimate>& estimates);
+
 /// The cells that a nonce chooses to be played on other scenes: one number of demonstrations and one training seed, in
 /// every scenario and layout.
 std::vector<std::size_t> fresh_cells(const Entry& entry, const std::string& nonce);

@@ -11,6 +11,7 @@
 
 #include <lgabench/leaderboard/areas.hpp>
 #include <lgabench/leaderboard/check.hpp>
+#include <lgabench/leaderboard/fresh_commands.hpp>
 #include <lgabench/leaderboard/pages.hpp>
 #include <lgabench/leaderboard/played_cell.hpp>
 #include <lgabench/leaderboard/standings.hpp>
@@ -354,6 +355,61 @@ TEST(LeaderboardEntry, FreshScenesArePooled) {
   EXPECT_EQ(lucky.fresh(), -1);
   for (int i = 0; i < 9; ++i) add_vouched(lucky, fresh_of(lucky, {}));
   EXPECT_EQ(why_not_ranked(lucky), "") << "one line in ten, by chance";
+}
+
+// A line of drawn commands: so many of them exact, and of the published ones.
+Json commands_of(const Entry& entry, int exact, int of, int published_exact, int published) {
+  Json line = replay_of(entry, "b", "another");
+  for (const char* other : {"cells", "bit_identical", "flips", "only_recorded", "episodes"}) line.erase(other);
+  line.update({{"kind", "commands"},
+               {"commands", of},
+               {"exact", exact},
+               {"lga_exact", of},
+               {"published", published},
+               {"published_exact", published_exact}});
+  line["passed"] = knows_fresh_commands({&line});
+  return line;
+}
+
+TEST(LeaderboardEntry, ATableOfPublishedTruthsIsNoMethodForDrawnCommands) {
+  Entry entry = replayed_entry(small_setting(), "a", .5);
+  const auto passes = [&](int exact, int published_exact, int published = 14, int of = 40) {
+    return commands_of(entry, exact, of, published_exact, published).at("passed").get<bool>();
+  };
+  EXPECT_FALSE(passes(0, 14)) << "a table";
+  EXPECT_FALSE(passes(0, 2, 2)) << "a table of two commands";
+  EXPECT_FALSE(passes(20, 14));
+  EXPECT_TRUE(passes(38, 14)) << "five points less than lga";
+  EXPECT_TRUE(passes(37, 14)) << "by chance";
+  EXPECT_TRUE(passes(12, 5)) << "an ablation that is as good as it was";
+  EXPECT_TRUE(passes(0, 0)) << "nothing was known by heart";
+  EXPECT_EQ(entry.fresh_commands(), 0);
+  entry.verifications.push_back(commands_of(entry, 0, 40, 14, 14));
+  EXPECT_EQ(why_not_ranked(entry), "") << "a claim";
+  add_vouched(entry, commands_of(entry, 0, 40, 14, 14));
+  EXPECT_EQ(why_not_ranked(entry), "differs on fresh commands");
+  Entry pooled = replayed_entry(small_setting(), "a", .5);
+  add_vouched(pooled, commands_of(pooled, 36, 40, 14, 14));
+  EXPECT_EQ(pooled.fresh_commands(), 1);
+  for (int i = 0; i < 9; ++i) add_vouched(pooled, commands_of(pooled, 36, 40, 14, 14));
+  EXPECT_EQ(pooled.fresh_commands(), 1) << "Fisher's test of 360 of 400 beside 14 of 14";
+  const auto complaint = [&](Json line, const char* member, const Json& value) {
+    line[member] = value;
+    return message_of<InputError>(
+        [&] { expect_verification(JsonReader(line, "verifications.jsonl"), entry, entry.hash()); });
+  };
+  const Json line = commands_of(entry, 0, 40, 14, 14);
+  EXPECT_SAYS(complaint(line, "passed", true), "/passed: expected false, by its counts");
+  EXPECT_SAYS(complaint(line, "exact", 41), "/exact: expected");
+  EXPECT_SAYS(complaint(line, "commands", 19), "/commands: expected");
+}
+
+TEST(LeaderboardEntry, WhatFreshScenesFindIsSaid) {
+  const Entry entry = made_entry(small_setting(), "a", .5);
+  const Json line = fresh_of(entry, {});
+  const std::vector<FreshEstimate> estimates = fresh_estimates(entry, {&line});
+  const double error = (estimates.back().high - estimates.back().low) / 2 / 1.959964;
+  EXPECT_NEAR(smallest_found(estimates), error * (2.393980 + 0.841621), 1e-5) << "Holm's first of three";
 }
 
 TEST(LeaderboardEntry, OtherPersonsDifferMoreThanOtherScenesOfTheSame) {
