@@ -20,10 +20,10 @@ PICTURE, RANDOM = "Ablation, sees the picture, scenes from the truth", "Random v
 RIGHT, SEEN, NEW = "The right φ̂", "seen, 7 commands", "unseen, 7 commands"
 AREAS, NETWORK, LIGHT = "Findings", "Perturbations with", "`light_intensity`"
 FIGURES = {
-    "clutter": [("true mask", "clutter", BOARD, "Human|heat map", "5"), ("mask of φ̂, LGA", "clutter", BOARD, "LGA|heat map", "5"),
+    "clutter": [("true mask", "clutter", BOARD, "True mask|heat map", "5"), ("mask of φ̂, LGA", "clutter", BOARD, "LGA|heat map", "5"),
                 ("GCBC-SEG", "clutter", BOARD, "GCBC-SEG|heat map", "5"),
                 ("picture, words", "clutter", BOARD, "GCBC, without DART|heat map", "5"), ("random object", "clutter", BOARD, RANDOM, "5")],
-    "reproduction": [("LGA", "q1", "The paper's figure", "LGA", "50"), ("Human", "q1", "The paper's figure", "Human (true φ̂, no human data)", "50"),
+    "reproduction": [("LGA", "q1", "The paper's figure", "LGA", "50"), ("true mask", "q1", "The paper's figure", "True mask", "50"),
                      ("GCBC-SEG", "q1", "The paper's figure", "GCBC-SEG", "50"),
                      ("random object", "q1", "The paper's figure", "*random visible object*", "50")],
     "policy": [("mask, network", "factorial", BOARD, f"{MASK}|paper’s network", "50"),
@@ -87,7 +87,7 @@ def figure(bars):
 
 
 # README's curves: what the policy sees, and the row that shows it, of one table; the numbers of demonstrations are its columns.
-CURVES = [("true mask", "Human|heat map", "#0b5cad"), ("mask of φ̂ (LGA)", "LGA|heat map", "#d1495b"),
+CURVES = [("true mask", "True mask|heat map", "#0b5cad"), ("mask of φ̂ (LGA)", "LGA|heat map", "#d1495b"),
           ("mask of any object", "Mask of any object|heat map", "#7a5195"),
           ("picture, mask of all, words (GCBC-SEG)", "GCBC-SEG|heat map", "#2e7d4f"), ("picture and words", "GCBC, without DART|heat map", "#b26a00")]
 NUMBERS = ("1", "5", "20")

@@ -44,7 +44,7 @@ def success(run, method, arm, demonstrations=5):
     return next(row for row in RUNS[run]["rows"] if (row["method"], row["arm"]) == (method, arm) and row["demonstrations"] in (demonstrations, 0))
 
 
-ROWS = {"lga": "LGA", "human": "Human", "lga_s": "LGA-S", "gcbc_seg": "GCBC-SEG", "factorial+input=object_mask_and_words": "mask of any object, and words",
+ROWS = {"lga": "LGA", "human": "True mask", "lga_s": "LGA-S", "gcbc_seg": "GCBC-SEG", "factorial+input=object_mask_and_words": "mask of any object, and words",
         "factorial+input=object_mask": "mask of any object"}
 
 
@@ -185,7 +185,8 @@ def perturbations_read():
          *([f"`{axis}`", *(at_levels(found, row, axis) for row in rows.values())] for axis in axes_of(found, "perturbations"))])
 
 
-RULES = {"random_object": "random object in view", "largest": "largest in the picture", "first_listed": "first that the simulator lists",
+RULES = {"random_object": "random object in view", "exclusion": "least often left by the command's demonstrations",
+         "last_demonstrated": "most like the last that was taken", "most_alike_names": "most demonstrated, by what names mean", "largest": "largest in the picture", "first_listed": "first that the simulator lists",
           "names": "names in the command", "word_vectors": "nearest by sentence embeddings", "constant_place": "nearest to the usual place",
           "nearest_colour": "nearest mean colour", "nearest_outline": "nearest outline", "nearest_size": "nearest size",
           "another_commands": "most demonstrated of another command", "least_demonstrated": "least demonstrated",

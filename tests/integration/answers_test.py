@@ -856,7 +856,7 @@ class Humans(Case):
 
     def test_a_cell_for_each_of_them(self):
         stand_ins = self.call(*self.RUN, "--tables", "--out", "without")
-        self.assertIn("Human: true φ̂: no human data.", stand_ins.stdout)
+        self.assertIn("True mask: true φ̂: no human data.", stand_ins.stdout)
         table = self.call(*self.RUN, "--tables", "--out", "out", "--humans", "people").stdout
         self.assertIn("Human: 3 participants.", table)
         self.assertIn("LGA-HILL: 3 participants, who edited a language model's φ̂.", table)

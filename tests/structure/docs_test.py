@@ -58,7 +58,7 @@ class Pages(unittest.TestCase):
 
     def test_the_figure_and_the_text_beside_it_are_the_table(self):
         figure, table = (SOURCE / "docs/pictures/success.svg").read_text(), q1_table()
-        rows = ["LGA", "LGA-HILL", "Human", "LGA-S", "LGA-L", "GCBC-SEG", "GCBC-DART"]
+        rows = ["LGA", "LGA-HILL", "True mask", "LGA-S", "LGA-L", "GCBC-SEG", "GCBC-DART"]
         point = r"[ML][\d.]+ ([\d.]+)"
         lines = re.findall(rf'<path d="({point * 5})" class="s-series f-none" fill="none" stroke="currentColor" stroke-width="2"/>', figure)
         self.assertEqual(len(lines), len(rows))

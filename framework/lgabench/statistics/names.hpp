@@ -9,6 +9,9 @@ namespace lgabench::statistics {
 // A method is named by its row: its id, and "+option=value" where options tell it from other rows of that id. The
 // names, order, colours and marks of the paper's methods are data (results/paper/methods.json).
 
+/// What display_name() takes for the row `human` of a run in which no person took part: "True mask".
+inline constexpr const char* true_mask_row = "true_mask";
+
 /// "lga_hill" -> "LGA-HILL", as the paper writes it; "lga+loss=squared" -> "LGA loss=squared". An id that is not known
 /// stays as it is.
 std::string display_name(const std::string& method);

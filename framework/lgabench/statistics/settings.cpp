@@ -15,13 +15,23 @@
 namespace lgabench::statistics {
 namespace {
 
+// The row's name, of `human` that of what stands in for people where none took part.
+std::string with_stand_in(const RunResults& run, const std::string& row) {
+  const std::string people = "human";
+  const bool took_part = std::any_of(run.cells.begin(), run.cells.end(), [&row](const CellResult& cell) {
+    return cell.method == row && !cell.participant.empty();
+  });
+  std::string name = row;
+  return row_id(row) != people || took_part ? row : name.replace(name.find(people), people.size(), true_mask_row);
+}
+
 // Names of the run's rows that a description of methods.json fits, in the order of tables.
 std::vector<std::string> rows_like(const RunResults& run, const JsonReader& description) {
   std::set<std::string, ByRank> rows;
   for (const CellResult& cell : run.cells)
     if (fits(cell, description)) rows.insert(cell.method);
   std::vector<std::string> names;
-  for (const std::string& row : rows) names.push_back(display_name(row));
+  for (const std::string& row : rows) names.push_back(display_name(with_stand_in(run, row)));
   return names;
 }
 
@@ -44,9 +54,9 @@ std::vector<std::string> remarks(const RunResults& run) {
 }
 
 // "loss=squared: LGA, Human": rows with the same options together, in the order of tables.
-std::vector<std::string> options_beside_defaults(const Json& settings) {
+std::vector<std::string> options_beside_defaults(const RunResults& run) {
   std::map<std::string, std::string, ByRank> rows;  // their options
-  for (const auto& [row, options] : settings.items()) {
+  for (const auto& [row, options] : run.record.settings.items()) {
     std::vector<std::string> texts;
     for (const auto& [option, value] : options.items()) texts.push_back(option + "=" + option_text(value));
     rows[row] = fmt::format("{}", fmt::join(texts, ", "));
@@ -56,7 +66,7 @@ std::vector<std::string> options_beside_defaults(const Json& settings) {
     std::size_t at = 0;
     while (at < groups.size() && groups[at].first != options) ++at;
     if (at == groups.size()) groups.push_back({options, {}});
-    groups[at].second.push_back(display_name(row));
+    groups[at].second.push_back(display_name(with_stand_in(run, row)));
   }
   std::vector<std::string> lines;
   for (const auto& [options, names] : groups) lines.push_back(fmt::format("{}: {}", options, fmt::join(names, ", ")));
@@ -122,8 +132,7 @@ std::string seen_through(const RunResults& run) {
 std::vector<std::string> settings(const RunResults& run) {
   std::vector<std::string> lines;
   if (!run.record.preset.empty()) lines.push_back("preset " + run.record.preset);
-  for (const std::string& line : options_beside_defaults(run.record.settings))
-    lines.push_back("beside the plugins' defaults, " + line);
+  for (const std::string& line : options_beside_defaults(run)) lines.push_back("beside the plugins' defaults, " + line);
   if (run.record.request.value("test_scenes", Json()) == TestScenes::per_seed)
     lines.emplace_back("each training seed plays test scenes of its own");
   if (const std::string through = seen_through(run); !through.empty())
@@ -147,7 +156,7 @@ std::map<std::string, std::string> told_names(const RunResults& run) {
   const Json suite = about_suite(run.suite).options;
   std::map<std::string, std::string> names;
   for (const auto& [row, cell] : rows.cells) {
-    std::string& name = names[row] = row;
+    std::string& name = names[row] = with_stand_in(run, row);
     const std::set<std::string> named = told_options(row);
     for (const auto& [option, value] : cell->options.items()) {
       if (named.count(option) > 0) continue;

@@ -12,6 +12,7 @@
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/record/layout.hpp>
+#include <lgabench/plugin/loader.hpp>
 #include <lgabench/statistics/names.hpp>
 
 namespace lgabench::statistics {
@@ -158,11 +159,12 @@ std::vector<std::string> empty_selections(const RunResults& run) {
 
 // What the tables' rows and arms have to be told with.
 struct Noted {
-  std::set<std::string> marked;               // words of marks
-  std::set<std::string> same_as;              // arms whose actions another arm repeats
-  std::set<std::string> of_some;              // lines on arms that not all scenarios have
-  std::map<std::string, std::string> people;  // method -> whom its Selections measure, where that has to be said
-  std::set<std::string> models, live;         // behind cassettes, and asked while cells ran
+  std::set<std::string> marked;   // words of marks
+  std::set<std::string> same_as;  // arms whose actions another arm repeats
+  std::set<std::string> of_some;  // lines on arms that not all scenarios have
+  // Name of a row -> whom its Selections measure, where that has to be said.
+  std::map<std::string, std::string> people;
+  std::set<std::string> models, live;  // behind cassettes, and asked while cells ran
 };
 
 void note_arms(const Table& table, Noted& noted) {
@@ -176,7 +178,8 @@ void note_arms(const Table& table, Noted& noted) {
 void note_selections(const Row& row, Noted& noted) {
   for (const PhiOfCommand& phi : row.phi) {
     if (phi.provenance == "truth" || phi.provenance == "simulated_edit")
-      noted.people[row.method] = provenance_words(phi.provenance, phi.erring);
+      noted.people[row_id(row.method) == "human" ? display_name(true_mask_row) : display_name(row.method)] =
+          provenance_words(phi.provenance, phi.erring);
     if (phi.provenance == "cassette") noted.models.insert(phi.source);
     if (phi.provenance == "live") noted.live.insert(phi.source);
   }
@@ -193,9 +196,10 @@ void note_row(const RunResults& run, const Row& row, Noted& noted) {
   if (acts_the_same(row)) noted.same_as.insert(row.shift->against_title);
   note_selections(row, noted);
   if (row.is_mean() && row.participants > 0)
-    noted.people[row.method] = fmt::format("{} participant{}{}{}", row.participants, row.participants == 1 ? "" : "s",
-                                           run.rehearsal ? fmt::format(" ({})", rehearsal_words) : "",
-                                           edits(run, row.method) ? ", who edited a language model's φ̂" : "");
+    noted.people[display_name(row.method)] =
+        fmt::format("{} participant{}{}{}", row.participants, row.participants == 1 ? "" : "s",
+                    run.rehearsal ? fmt::format(" ({})", rehearsal_words) : "",
+                    edits(run, row.method) ? ", who edited a language model's φ̂" : "");
 }
 
 }  // namespace
@@ -230,7 +234,7 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
     if (noted.marked.count(mark.word) != 0) lines.push_back(fmt::format("{} {}.", mark.sign, mark.meaning));
   for (const std::string& arm : noted.same_as) lines.push_back(fmt::format("= the same actions as in {}.", arm));
   lines.insert(lines.end(), noted.of_some.begin(), noted.of_some.end());
-  for (const auto& [method, who] : noted.people) lines.push_back(fmt::format("{}: {}.", display_name(method), who));
+  for (const auto& [name, who] : noted.people) lines.push_back(fmt::format("{}: {}.", name, who));
   for (const Table& table : summary.tables)
     if (const auto& near = table.nearness)
       lines.push_back(

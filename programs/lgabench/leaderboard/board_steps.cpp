@@ -127,7 +127,9 @@ document::Grid steps_grid(const BoardSteps& steps, const std::string& suite, con
     const BoardSteps::Played& one = steps.played[i];
     grid.rows.emplace_back();
     put(grid, "told", 'l', document::Span(one.stage->what));
-    put(grid, "row", 'l', document::Span(statistics::display_name(one.stage->method)));
+    put(grid, "row", 'l',
+        document::Span(statistics::display_name(
+            one.stage->method == std::string_view(true_mask) ? statistics::true_mask_row : one.stage->method)));
     put(grid, "success", 'r', document::Span::number(fixed(one.success)));
     if (steps.played.front().undisputed)
       put(grid, "undisputed", 'r', document::Span::number(fixed(one.undisputed.value_or(0))));

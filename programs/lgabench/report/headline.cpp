@@ -83,6 +83,13 @@ Spans steps_sentence(const Steps& of) {
   return spans;
 }
 
+// "the true mask" for the name of a row that is a thing.
+std::string in_a_sentence(std::string name) {
+  if (name.rfind(display_name(true_mask_row), 0) != 0) return name;
+  name.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(name.front())));
+  return "the " + name;
+}
+
 void add_difference(Spans& spans, const Change& change, const std::string& other, const char* before) {
   const bool less = change.difference < 0;
   const Interval low_high = less ? Interval{-change.interval.high, -change.interval.low} : change.interval;
@@ -133,7 +140,7 @@ Spans headline(const Material& material, const AboutSuite& about) {
       any = true;
     };
     for (const std::string& other : most_compared(methods, most_others))
-      add(against_method(material, table, first, other, *column), material.styles.name(other));
+      add(against_method(material, table, first, other, *column), in_a_sentence(material.styles.name(other)));
     add(against_random(material, table, first, *column), "the " + display_name(random_object));
   }
   spans.emplace_back(any ? " (95 % intervals of the paired differences)." : ".");
