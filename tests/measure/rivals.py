@@ -32,7 +32,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENE_SEED, TRAINING_SEEDS = 77191, 8  # scenes of an arm share the demonstrations of these seeds in turn
 NUMBERS = 1, 5, 20  # of demonstrations of a command
 BESIDE = {"many_commands-abstraction_unheard": ["seen_commands_7"]}  # arms that decide nothing, for comparison
-CURVES = {"clutter-curve": "clutter-abstraction", "many_commands-curve": "many_commands-abstraction_unheard"}  # with the scenarios of
+CURVES = {"clutter-curve": "clutter-abstraction", "few_members-curve": "few_members-abstraction_matched",
+          "many_commands-curve": "many_commands-abstraction_unheard"}  # with the scenarios of
 LEAK = .05  # above chance
 Thing = collections.namedtuple("Thing", "id type texture pixels place colour outline")
 Record = collections.namedtuple("Record", "utterance things stationed taken received")  # a scene; ids of what is meant
@@ -98,6 +99,16 @@ def demonstrated(one, shown):
     return math.prod(shown.counts[f] + .5 for f in features(one)[:2])
 
 
+def left(one, shown):
+    """How often its type and its texture stood in demonstrations and were not taken."""
+    return math.prod(shown.left[f] + .5 for f in features(one)[:2])
+
+
+def shared(one, other):
+    """How many of type and texture two things share."""
+    return sum(a == b for a, b in zip(features(one)[:2], features(other)[:2]))
+
+
 def alike_in_name(one, shown):
     """demonstrated(), times the mean similarity of its type's name to those taken, times its texture's; below 0 is 0."""
     mean = lambda part: max(sum(vector(getattr(one, part)) @ vector(getattr(of, part)) for of in shown.taken) / len(shown.taken), 0)
@@ -150,12 +161,14 @@ TAUGHT = {
     "nearest_size": lambda one, known: -min(abs(math.log(one.pixels / of.pixels)) for of in known.own.taken),
     "another_commands": lambda one, known: demonstrated(one, known.other),
     "least_demonstrated": lambda one, known: -demonstrated(one, known.every),
+    "exclusion": lambda one, known: -left(one, known.own),
+    "last_demonstrated": lambda one, known: shared(one, known.own.taken[-1]),
     "most_demonstrated": lambda one, known: demonstrated(one, known.own),
     "names_and_demonstrated": lambda one, known: (named(one, known.said) + .5) * demonstrated(one, known.own),
+    "most_alike_names": lambda one, known: alike_in_name(one, known.own),
     "bayes": lambda one, known: bayes(one, known.own)}
-# Beside these, for labels.py: not in rivals.json yet.
-BY_NAME = {"most_alike_names": lambda one, known: alike_in_name(one, known.own)}
-LABEL_LEARNERS = {"most_demonstrated", "names_and_demonstrated", "bayes"}  # no leaks: what methods are compared with
+# No leaks: what methods are compared with.
+LABEL_LEARNERS = {"most_demonstrated", "names_and_demonstrated", "most_alike_names", "bayes", "exclusion", "last_demonstrated"}
 
 
 def share(rule, candidates, meant, known):
@@ -216,7 +229,7 @@ def measure(scenarios, arm, scenes, scene_seed, known, plain=tuple(UNTAUGHT), le
                 results[name, 0].append(picks(UNTAUGHT[name], test, nothing, nothing, nothing))
             for n in NUMBERS:
                 for name in learners:
-                    results[name, n].append(picks({**TAUGHT, **BY_NAME}[name], test, taught.of(test.utterance, n), taught.of(None, n), other.of(said, n)))
+                    results[name, n].append(picks(TAUGHT[name], test, taught.of(test.utterance, n), taught.of(None, n), other.of(said, n)))
     return table(results, two=bool(environments[0].action_space.stations))
 
 
@@ -239,9 +252,10 @@ def table(results, two):
 
 
 def arms_of_the_track():
-    """{suite-preset: arms}; a curve's scenes are of another preset's arms."""
-    track = json.loads((ROOT / "results/leaderboard/tracks.json").read_text())["abstraction"]
-    return {name: arms + BESIDE.get(name, []) for name, arms in track.items() if name not in CURVES}
+    """{suite-preset: arms}; a curve's scenes are of another preset's arms, and persons' are rivals themselves (tests/unit/persons_test.cpp)."""
+    tracks = json.loads((ROOT / "results/leaderboard/tracks.json").read_text())
+    return {name: arms + BESIDE.get(name, []) for name, arms in tracks["abstraction"].items()
+            if name not in CURVES and name not in tracks.get("persons", [])}
 
 
 def main():
