@@ -16,6 +16,7 @@ PerturbationAxis friction_mass() {
     scene.mass = mass.at(static_cast<std::size_t>(level - 1));
     return scene;
   };
+  axis.lacks = lacks_engine;
   axis.bodies = [](int level) {
     const auto at = static_cast<std::size_t>(level - 1);
     return BodyVariants{{1}, friction.at(at), mass.at(at)};

@@ -22,6 +22,7 @@ PerturbationAxis object_size() {
     return stream.coin() ? environment.resized(std::move(scene), down.at(static_cast<std::size_t>(level - 1)))
                          : environment.with_larger_target(std::move(scene), larger(level));
   };
+  axis.lacks = lacks_engine;
   axis.bodies = [](int level) {
     BodyVariants bodies{larger(level)};
     bodies.scales.insert(bodies.scales.begin(), {1, down.at(static_cast<std::size_t>(level - 1))});

@@ -97,7 +97,7 @@ def _instruction(environment: lgabench.Environment) -> Instruction:
     return Instruction(environment.utterance, scenario.truth(command))
 
 
-def demonstrations(scenario: Scenario = "heart", count: int = 5, *, engine: str = "mujoco", seed: int = 0,
+def demonstrations(scenario: Scenario = "heart", count: int = 5, *, engine: Optional[str] = None, seed: int = 0,
                    shadows: bool = False) -> list[Demonstration]:
     """The oracle's first `count` episodes of a training seed, with the true Selections. `shadows`: as Needs has it."""
     with lgabench.Environment(scenario, engine, shadows=shadows) as environment:
@@ -113,7 +113,7 @@ def demonstrations(scenario: Scenario = "heart", count: int = 5, *, engine: str 
         return all_of_them
 
 
-def observations(scenario: Scenario = "heart", count: int = 5, *, engine: str = "mujoco", seed: int = 0) -> list[Observation]:
+def observations(scenario: Scenario = "heart", count: int = 5, *, engine: Optional[str] = None, seed: int = 0) -> list[Observation]:
     """The first `count` test scenes."""
     with lgabench.Environment(scenario, engine) as environment:
         return [environment.reset("test", index, seed=seed) for index in range(count)]
@@ -134,7 +134,7 @@ def services(kind: Callable[[], Method], scenario: Scenario = "heart", *, seed: 
     return Services(TrueAnswers(space), NoPeople(), values, seed, Curves(), tempfile.mkdtemp(prefix="lgabench-files-"), layout)
 
 
-def try_out(kind: Callable[[], Method], scenario: Scenario = "heart", count: int = 10, episodes: int = 20, *, engine: str = "mujoco",
+def try_out(kind: Callable[[], Method], scenario: Scenario = "heart", count: int = 10, episodes: int = 20, *, engine: Optional[str] = None,
             seed: int = 0, **options: Any) -> lgabench.Result:
     """Calls a method as a cell does (select, revise, learn, act) on `count` demonstrations, and plays the first test scenes."""
     space, method = as_scenario(scenario), kind()

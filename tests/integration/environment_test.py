@@ -27,7 +27,7 @@ class PluginEnvironments(Case):
 
     def run_suite(self, *more, expect=0):
         return self.call("run", str(SOURCE / "reach2d_suite.json"), "--answers", "none", "--methods", "human", "--demos", "1", "--seeds", "0",
-                         "--episodes", "2", "--set", "human.epochs=1", "--out", "run", *more, expect=expect)
+                         "--episodes", "2", "--set", "human.epochs=1", "--engines", "own", "--out", "run", *more, expect=expect)
 
     def test_one_is_run_reported_replayed_and_verified_by_its_path(self):
         path = ("--plugin-path", self.installed())
@@ -43,6 +43,32 @@ class PluginEnvironments(Case):
         self.call("replay", "run", f"{cell}/test/0", *path, "--out", "episode.png")
         self.assertIn("reach_blind", self.call("info", "reach2d", *path).stdout)
         self.assertIn("reach2d", self.call("list", "environments", "--short", *path).stdout)
+
+    def test_one_without_an_engine_plugin_says_so(self):
+        path = ("--plugin-path", self.installed())
+        self.run_suite(*path)
+        for file in self.dir.glob("run/cells/*/cell.json"):
+            self.assertEqual(json.loads(file.read_text())["engine"], "own")
+        for file in self.dir.glob("run/cells/*/status.json"):
+            self.assertNotIn("engine", json.loads(file.read_text())["build"])
+        self.assertNotIn("engine", {plugin["kind"] for plugin in json.loads((self.dir / "run/run.json").read_text())["plugins"]})
+        self.assertIn("own: no engine plugin", self.call("info", "reach2d", *path).stdout)
+        for words, reason in ((("run", str(SOURCE / "reach2d_suite.json"), "--answers", "none", "--engines", "kinematic"), "reach2d has no engine plugin: expected own"),
+                              (("demos", "reach2d_red", "--engine", "kinematic", "--out", "a.hdf5"), "reach2d has no engine plugin: expected own"),
+                              (("run", "q1", "--engines", "own"), "environment tabletop needs an engine plugin")):
+            said = self.call(*words, *path, expect=2).stderr
+            self.assertIn(reason, said)
+            self.assertEqual(said.count("\n"), 1)
+
+    def test_axes_of_an_engine_are_refused_without_one(self):
+        path = ("--plugin-path", self.installed())
+        for axis in ("friction_mass", "object_size"):
+            scenario = json.loads((SOURCE / "reach2d_red.json").read_text())
+            scenario["id"] = "own"
+            scenario["tests"].append({"arm": "changed", "perturbation": {axis: 1}})
+            (self.dir / "own.json").write_text(json.dumps(scenario))
+            said = self.call("check-scenario", "own.json", *path, expect=2).stderr
+            self.assertIn(f"{axis}: expected an environment with an engine plugin, reach2d has none", said)
 
     def test_a_report_needs_none(self):
         self.run_suite("--plugin-path", self.installed())

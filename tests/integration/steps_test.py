@@ -36,7 +36,7 @@ class Steps(Case):
         self.environment.update(FOUND)
 
     def run_suite(self, *more):
-        self.call("run", str(SOURCE / "reach2d_suite.json"), "--answers", "none", *more, "--out", "run", timeout=2000)
+        self.call("run", str(SOURCE / "reach2d_suite.json"), "--answers", "none", "--engines", "own", *more, "--out", "run", timeout=2000)
         self.assert_matches_schemas("run")
 
     def lines(self, row):
@@ -82,14 +82,14 @@ class Steps(Case):
                       self.call("replay", "run", f"{cell}/test/0", "--out", "a.gif", expect=2).stderr)
 
     def test_demonstrations_are_trajectories(self):
-        self.call("demos", "reach2d_red", "--n", "3", "--noisy", "2", "--out", "a.hdf5")
+        self.call("demos", "reach2d_red", "--engine", "own", "--n", "3", "--noisy", "2", "--out", "a.hdf5")
         self.assertRegex(self.call("demos", "--inspect", "a.hdf5").stdout, r"demo_0: ([5-9]|1\d|2\d) steps")
 
     def test_plugins_are_checked_on_sequences(self):
         plugins = BUILD / "lib/lgabench/plugins"
         self.assertIn("good", self.call("check-plugin", str(plugins / "human.so"), "--environment", "reach2d", "--set", "epochs=2").stdout)
-        told = self.call("check-plugin", str(plugins / "kinematic.so"), "--environment", "reach2d").stdout
-        self.assertIn("oracle, reach", told)
+        refused = self.call("check-plugin", str(plugins / "kinematic.so"), "--environment", "reach2d", expect=2).stderr
+        self.assertIn("engine kinematic: environment reach2d has no engine plugin: expected own", refused)
         self.assertIn("the oracle succeeds in 50 of 50 scenes", self.call("check-scenario", "reach2d_red").stdout)
 
     def broken(self, how):

@@ -17,15 +17,14 @@ import lgabench
 from lgabench.data import load_demonstrations
 from lgabench_method import testing
 from data_test import Case
-from scenes_test import ENGINE
 
 
 def make(**arguments):
-    return gymnasium.make("lgabench/reach2d_red-v1", engine=ENGINE, split="test", **arguments)
+    return gymnasium.make("lgabench/reach2d_red-v1", split="test", **arguments)
 
 
 def make_vec(n, **arguments):
-    return gymnasium.make_vec("lgabench/reach2d_red-v1", n, engine=ENGINE, split="test", **arguments).unwrapped
+    return gymnasium.make_vec("lgabench/reach2d_red-v1", n, split="test", **arguments).unwrapped
 
 
 class Steps(Case):
@@ -86,7 +85,7 @@ class Steps(Case):
             self.assertGreater(ended, 6)
 
     def test_a_file_has_what_the_gymnasium_environment_plays(self):
-        self.call("demos", "reach2d_red", "--engine", ENGINE, "--n", 4, "--noisy", 2, "--out", "d.hdf5")
+        self.call("demos", "reach2d_red", "--n", 4, "--noisy", 2, "--out", "d.hdf5")
         shown = load_demonstrations(self.dir / "d.hdf5")
         env = make().unwrapped
         for number, one in enumerate(shown):
@@ -99,7 +98,7 @@ class Steps(Case):
             self.assertTrue(info["is_success"])
 
     def test_nothing_left_to_do_is_a_number_of_an_action(self):
-        self.call("demos", "reach2d_red", "--engine", ENGINE, "--n", 2, "--out", "d.hdf5")
+        self.call("demos", "reach2d_red", "--n", 2, "--out", "d.hdf5")
         before = load_demonstrations(self.dir / "d.hdf5")
         self.assertEqual(before.actions(before[0].steps).shape, (len(before[0].steps), 2))
         with h5py.File(self.dir / "d.hdf5", "r+") as file:
@@ -117,11 +116,11 @@ class Steps(Case):
             shown.actions(shown[0].steps)
 
     def test_methods_get_trajectories_and_states(self):
-        for one in testing.demonstrations("reach2d_red", 3, engine=ENGINE):
+        for one in testing.demonstrations("reach2d_red", 3):
             self.assertGreater(len(one.steps), 2)
             self.assertEqual(one.recovery, [])
             self.assertEqual([step.observation.state.shape for step in one.steps], [(2,)] * len(one.steps))
-        with lgabench.Environment("reach2d_red", ENGINE) as environment:
+        with lgabench.Environment("reach2d_red") as environment:
             won = lgabench.evaluate(lambda seen, words: environment.expert_action(), environment, 10)
         self.assertEqual(won.success, 1)
         names = [number.name for number in lgabench.Scenario("reach2d_red").state]

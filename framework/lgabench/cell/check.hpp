@@ -19,7 +19,7 @@ using CheckPhase = std::function<void(const std::string& phase, const CheckRepor
 /// environment that has such commands. The seed is not the job's. Returns all findings; one thread.
 /// @throws PluginError if it cannot be loaded, MethodGone where its process ends; whatever else it throws is a finding.
 /// EngineError for the engine's fault.
-CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase& phase);
+CheckReport check_method(HostJob job, const std::optional<PluginInfo>& engine, const CheckPhase& phase);
 
 /// Lets the oracle play scenes of every task of the environment ("": of all) on the engine, forwards and backwards,
 /// likewise.
@@ -27,7 +27,8 @@ CheckReport check_engine(const PluginInfo& engine, const std::string& environmen
 
 /// Samples, draws and lets the oracle play scenes of every task of the environment, likewise. `engine` is for those
 /// that use one. @throws PluginError if it cannot be loaded.
-CheckReport check_environment(const std::string& id, const PluginInfo& engine, const CheckPhase& phase);
+CheckReport check_environment(const std::string& id, const std::optional<PluginInfo>& engine,
+                              const CheckPhase& phase);
 
 /// Lets the perturbation perceive scenes of the environment ("": of all) at each level, forwards and backwards,
 /// likewise.

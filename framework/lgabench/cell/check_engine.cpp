@@ -81,8 +81,8 @@ constexpr Remedies of_environment{
     "reset() must free the memory of the last episode"};
 
 // Scenes of one task, forwards and twice backwards. Returns their bytes.
-std::string judge_task(const TaskInfo& task_info, const PluginInfo& engine, int most_lost, const Remedies& remedies,
-                       CheckReport& report) {
+std::string judge_task(const TaskInfo& task_info, const std::optional<PluginInfo>& engine, int most_lost,
+                       const Remedies& remedies, CheckReport& report) {
   const Scenario scenario = load_scenario(task_info.example);
   const auto environment = make_environment(scenario, load_engine(engine));
   const std::string& task = task_info.id;
@@ -146,7 +146,7 @@ void judge_description(const EnvironmentType& environment, CheckReport& report) 
 }
 
 // Sampled twice, and drawn as reset() shows them.
-void judge_scenes(const EnvironmentType& environment, const TaskInfo& task, const PluginInfo& engine,
+void judge_scenes(const EnvironmentType& environment, const TaskInfo& task, const std::optional<PluginInfo>& engine,
                   CheckReport& report) {
   const Scenario scenario = load_scenario(task.example);
   const auto played = make_environment(scenario, load_engine(engine));
@@ -184,7 +184,8 @@ CheckReport report_of(const CheckPhase& phase, const Checks& checks) {
 
 }  // namespace
 
-CheckReport check_environment(const std::string& id, const PluginInfo& engine, const CheckPhase& phase) {
+CheckReport check_environment(const std::string& id, const std::optional<PluginInfo>& engine,
+                              const CheckPhase& phase) {
   const ProcessState at_first = ProcessState::now();
   return report_of(phase, [&](CheckReport& report, std::string& all, const Begins& begins) {
     begins("its description");

@@ -101,7 +101,8 @@ struct Bench {
   std::unique_ptr<Environment> environment;
   std::vector<Sight> sights;
 
-  Bench(Scenario played, const PluginInfo& engine) : scenario(std::move(played)), layout(layouts_of(scenario).front()) {
+  Bench(Scenario played, const std::optional<PluginInfo>& engine)
+      : scenario(std::move(played)), layout(layouts_of(scenario).front()) {
     environment = make_environment(scenario, load_engine(engine));
     for (const Arm& arm : scenario.tests)
       for (int i = 0; i < scenes_an_arm; ++i) {
@@ -559,7 +560,7 @@ std::optional<Scenario> with_unseen_commands(const std::string& environment) {
 
 }  // namespace
 
-CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase& phase) {
+CheckReport check_method(HostJob job, const std::optional<PluginInfo>& engine, const CheckPhase& phase) {
   job.seed = seed;
   job.hidden = runs_below(job.plugin.file.parent_path());
   std::optional<Scenario> unseen = with_unseen_commands(job.environment);

@@ -105,8 +105,8 @@ CellMethod make_method(const CellJob& job) {
 }
 
 DemonstrationCache demonstration_cache(const CellJob& job, const Scenario& scenario) {
-  const std::vector<std::string> take_part{"engine", "lgabench-worker", "liblgabench_core.so",
-                                           job.cell.environment_in_build()};
+  std::vector<std::string> take_part{"lgabench-worker", "liblgabench_core.so", job.cell.environment_in_build()};
+  if (job.engine) take_part.emplace_back("engine");
   Json builds = Json::object();
   for (const std::string& name : take_part) builds[name] = JsonReader(job.build, "build").at(name).json();
   const std::string world = scenario.environment->world_of(scenario);

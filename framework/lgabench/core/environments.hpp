@@ -74,6 +74,9 @@ struct Showcase {
   Vec2 position_m;
 };
 
+/// What stands for an engine's id in cells of an environment that has no engine plugin.
+inline constexpr const char* own_engine = "own";
+
 /// A kind of environment: one constant object for as long as the program runs. Any thread may call it, but for draw().
 class EnvironmentType {
  public:
@@ -151,7 +154,10 @@ class EnvironmentType {
   /// How an engine's world for the scenario differs from that of most scenarios, "" where it does not: demonstrations
   /// depend on it.
   virtual std::string world_of(const Scenario& /*scenario*/) const { return ""; }
-  /// An environment on that engine, for scenes of that scenario. @throws EngineError if the engine fails.
+  /// Whether an engine plugin moves its bodies, as by default. An environment without one is made with none.
+  virtual bool has_engine() const { return true; }
+  /// An environment on that engine, for scenes of that scenario; `engine` is null exactly without has_engine().
+  /// @throws EngineError if the engine fails.
   virtual std::unique_ptr<Environment> make(std::unique_ptr<PhysicsWorld> engine, const Scenario& scenario) const = 0;
 };
 

@@ -154,6 +154,13 @@ bool operator==(const BodyVariant& a, const BodyVariant& b) {
   return a.scale == b.scale && a.friction == b.friction && a.mass == b.mass;
 }
 
+std::string lacks_engine(const Scenario& scenario, int /*level*/) {
+  const EnvironmentType& environment = *scenario.environment;
+  return environment.has_engine()
+             ? ""
+             : fmt::format("expected an environment with an engine plugin, {} has none", environment.id());
+}
+
 std::string lacking(const Scenario& scenario, const Perturbation& perturbation) {
   if (perturbation.axis == all_axes) return "";
   const PerturbationAxis& axis = *axes_named(perturbation.axis, scenario.axes).front();

@@ -101,6 +101,8 @@ std::vector<const PerturbationAxis*> axes_named(const std::string& id, const Plu
 /// The axes of a perturbation of the scenario's: of `all`, those that the scenario can have. An arm that was read has
 /// its own.
 std::vector<const PerturbationAxis*> axes_of(const Scenario& scenario, const Perturbation& perturbation);
+/// As PerturbationAxis::lacks, of an axis that changes what an engine plugin simulates.
+std::string lacks_engine(const Scenario& scenario, int level);
 /// Why the scenario cannot have the axis, in a few words; "" where it can. Every scenario can have `all`.
 std::string lacking(const Scenario& scenario, const Perturbation& perturbation);
 /// Every body that scenes of the scenario's arms may ask for, the usual one first.

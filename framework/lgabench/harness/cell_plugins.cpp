@@ -4,6 +4,10 @@
 
 namespace lgabench {
 
+std::optional<PluginInfo> engine_plugin(const Cell& cell, const Catalogue& catalogue) {
+  return catalogue.engine(cell.engine, find_environment(cell.environment));
+}
+
 const PluginInfo* method_plugin(const Cell& cell, const Catalogue& catalogue) {
   return cell.method.is_reference() ? nullptr : &catalogue.find("method", cell.method.id);
 }
@@ -28,7 +32,7 @@ const PluginInfo* perceiver_plugin(const Cell& cell, const Catalogue& catalogue)
 }
 
 Json build_of(const Cell& cell, const Catalogue& catalogue) {
-  Json build = build_hashes(catalogue.find("engine", cell.engine), method_plugin(cell, catalogue), cell.needs_axes());
+  Json build = build_hashes(engine_plugin(cell, catalogue), method_plugin(cell, catalogue), cell.needs_axes());
   if (const PluginInfo* acts = acting_plugin(cell, catalogue)) build["acts"] = acts->sha256;
   if (const PluginInfo* environment = environment_plugin(cell, catalogue))
     add_named(build, *environment);

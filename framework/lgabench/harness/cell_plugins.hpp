@@ -1,5 +1,6 @@
 // Which plugins compute a cell.
 #pragma once
+#include <optional>
 #include <vector>
 
 #include <lgabench/plugin/loader.hpp>
@@ -7,6 +8,9 @@
 
 namespace lgabench {
 
+/// What moves the bodies of its scenes; none where its environment has no engine plugin. @throws as
+/// Catalogue::engine().
+std::optional<PluginInfo> engine_plugin(const Cell& cell, const Catalogue& catalogue);
 /// What selects; null of a reference row. @throws as Catalogue::find().
 const PluginInfo* method_plugin(const Cell& cell, const Catalogue& catalogue);
 /// What acts in place of it; null where the method does. @throws as method_plugin().

@@ -84,8 +84,8 @@ void expect_read(const Suite& suite, const Scenario& scenario, const std::vector
 }
 
 // A perturbation of what the engine does not simulate would be none.
-void expect_dynamics(const Scenario& scenario, const PluginInfo& engine) {
-  if (!engine.kinematic) return;
+void expect_dynamics(const Scenario& scenario, const std::optional<PluginInfo>& engine) {
+  if (!engine || !engine->kinematic) return;
   for (const std::string& id : played_arms(scenario.json))
     for (const PerturbationAxis* axis : scenario.arm(id).axes) {
       const BodyVariants bodies = axis->bodies ? axis->bodies(scenario.arm(id).perturbation->level) : BodyVariants();
@@ -93,7 +93,7 @@ void expect_dynamics(const Scenario& scenario, const PluginInfo& engine) {
         throw InputError(
             fmt::format("scenario {}, arm {}: {} on the engine {}, whose bodies have neither friction nor "
                         "mass: expected another engine, or other perturbations",
-                        scenario.id, id, axis->id, engine.id));
+                        scenario.id, id, axis->id, engine->id));
     }
 }
 
@@ -268,7 +268,8 @@ bool learns(const Competitor& row) {
 std::vector<Cell> expand(const Suite& suite, const Design& design, const Variation& variation,
                          const Catalogue& catalogue) {
   const std::vector<Competitor> methods = competitors(suite, design, variation.options, catalogue);
-  for (const std::string& engine : design.engines) catalogue.find("engine", engine);
+  const EnvironmentType& environment = find_environment(suite.environment);
+  for (const std::string& engine : design.engines) catalogue.engine(engine, environment);
   expect_demonstrations(design, methods, catalogue);
   if (variation.played) expect_arms(*variation.played, arms_of(suite, design), suite);
   if (!variation.participants.empty() && std::none_of(methods.begin(), methods.end(), asks_people))
@@ -286,7 +287,7 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
     expect_layouts(scenario, design.layouts);
     expect_errors_possible(suite, scenario, all_errors);
     expect_read(suite, scenario, readings);
-    for (const std::string& engine : design.engines) expect_dynamics(scenario, catalogue.find("engine", engine));
+    for (const std::string& engine : design.engines) expect_dynamics(scenario, catalogue.engine(engine, environment));
     const std::vector<Row> answered = rows_in(scenario, rows, variation.participants);
     Place place{scenario, unplayed_cell(suite, design, scenario, variation.answers)};
     place.cell.train_on = design.train_on;

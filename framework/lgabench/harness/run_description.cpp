@@ -53,7 +53,7 @@ RunRecord describe(const RunPlan& plan, const Catalogue& catalogue) {
   };
   for (const Cell& cell : plan.cells) {
     run.cells.push_back(key(cell));
-    name(catalogue.find("engine", cell.engine));
+    if (const auto engine = engine_plugin(cell, catalogue)) name(*engine);
     if (const PluginInfo* environment = environment_plugin(cell, catalogue)) name(*environment);
     for (const PluginInfo& axis : axis_plugins(cell, catalogue)) name(axis);
     if (const PluginInfo* perceiver = perceiver_plugin(cell, catalogue)) name(*perceiver);

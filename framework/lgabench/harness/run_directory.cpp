@@ -62,7 +62,7 @@ std::string library_hash(const std::string& name) {
   return hash;
 }
 
-Json build_hashes(const PluginInfo& engine, const PluginInfo* method, bool axes) {
+Json build_hashes(const std::optional<PluginInfo>& engine, const PluginInfo* method, bool axes) {
   static const Json programs = [] {
     const fs::path bin = program_directory();
     Json hashes;
@@ -73,7 +73,7 @@ Json build_hashes(const PluginInfo& engine, const PluginInfo* method, bool axes)
   }();
   Json build = programs;
   if (axes) build[perturbation_library] = library_hash(perturbation_library);
-  build["engine"] = engine.sha256;
+  if (engine) build["engine"] = engine->sha256;
   if (method) build["method"] = method->sha256;
   if (method && !method->python.is_null()) build["python"] = canonical(method->python.at("versions"));
   return build;

@@ -19,7 +19,7 @@ std::string library_hash(const std::string& name);
 
 /// SHA-256 of what computes a cell: the worker, the framework's libraries, "engine" and "method" (the plugins' files;
 /// no "method" for a reference row); the library of perturbations where the cell needs its `axes`.
-Json build_hashes(const PluginInfo& engine, const PluginInfo* method, bool axes);
+Json build_hashes(const std::optional<PluginInfo>& engine, const PluginInfo* method, bool axes);
 
 /// What the files of the cell's environment, of its axes and of its perceiver are called there where they are plugins':
 /// "environment reach", "perturbation fog", "perceiver mine".

@@ -301,7 +301,7 @@ bool is_strangers(const Cell& cell, const Catalogue& catalogue) {
 
 bool has_own_arithmetic(const Cell& cell, const Catalogue& catalogue) {
   std::vector<PluginInfo> plugins = axis_plugins(cell, catalogue);
-  plugins.push_back(catalogue.find("engine", cell.engine));
+  if (const auto engine = engine_plugin(cell, catalogue)) plugins.push_back(*engine);
   if (const PluginInfo* environment = environment_plugin(cell, catalogue)) plugins.push_back(*environment);
   if (const PluginInfo* method = trained_plugin(cell, catalogue)) plugins.push_back(*method);
   if (const PluginInfo* perceiver = perceiver_plugin(cell, catalogue)) plugins.push_back(*perceiver);
@@ -348,7 +348,7 @@ Forecast forecast(const RunPlan& plan, const Catalogue& catalogue) {
 
 CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& cell, const fs::path& directory,
                  const fs::path& answers, const fs::path& scratch) {
-  CellJob job{cell,          catalogue.find("engine", cell.engine),
+  CellJob job{cell,          engine_plugin(cell, catalogue),
               std::nullopt,  directory,
               plan.cache,    answers,
               scratch,       build_of(cell, catalogue),

@@ -182,7 +182,8 @@ Suite load_suite(const std::string& id) {
   return suite;
 }
 
-const PluginInfo& default_engine(const Catalogue& catalogue) {
+std::string default_engine(const Catalogue& catalogue, const EnvironmentType& environment) {
+  if (!environment.has_engine()) return own_engine;
   std::vector<const PluginInfo*> there;
   for (const PluginInfo& plugin : catalogue.plugins)
     if (plugin.kind == "engine") there.push_back(&plugin);
@@ -190,8 +191,8 @@ const PluginInfo& default_engine(const Catalogue& catalogue) {
   for (const std::string& suite : shipped_names("suites"))
     for (const std::string& id : load_suite(suite).design.engines)
       for (const PluginInfo* engine : there)
-        if (engine->id == id) return *engine;
-  return *there.front();
+        if (engine->id == id) return id;
+  return there.front()->id;
 }
 
 Design preset_design(const Suite& suite, const std::string& preset) {

@@ -53,9 +53,9 @@ struct Suite {
 /// the known ones.
 Suite load_suite(const std::string& id);
 
-/// The engine where nobody names one: the first that a shipped suite is played on and that is there, else the first
-/// that is there. @throws InputError where there is none.
-const PluginInfo& default_engine(const Catalogue& catalogue);
+/// The environment's engine where nobody names one: own_engine, or the first plugin that a shipped suite is played on
+/// and that is there, else the first that is there. @throws InputError where there is none.
+std::string default_engine(const Catalogue& catalogue, const EnvironmentType& environment);
 
 /// The design of a preset; of the suite itself where `preset` is empty. @throws InputError for an unknown preset.
 Design preset_design(const Suite& suite, const std::string& preset);

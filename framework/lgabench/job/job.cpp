@@ -71,7 +71,7 @@ static void fields(CellJob& job, Fields& field) {
     job.cell = read_cell(reader->at("cell").json(), reader->file() + ": /cell");
   else
     field("cell", job.cell);
-  field("engine", job.engine);
+  field("engine", job.engine, when(job.engine.has_value()));
   field("directory", FullPath{job.directory});
   field("cache", FullPath{job.cache});
   field("answers", FullPath{job.answers});
@@ -94,7 +94,7 @@ static void fields(CellJob& job, Fields& field) {
 }
 
 static void fields(CheckJob& job, Fields& field) {
-  field("engine", job.engine);
+  field("engine", job.engine, when(job.engine.has_value()));
   field("options", job.options);
   field("scratch", job.scratch);
   field("perturb", job.perturb, within(0, 255));

@@ -36,7 +36,7 @@ struct LiveModel {
 /// lgabench-worker cell
 struct CellJob {
   Cell cell;
-  PluginInfo engine;
+  std::optional<PluginInfo> engine;  // none: its environment has none
   std::optional<PluginInfo> method;  // none for a reference row
   std::filesystem::path directory;   // gets the cell's files
   std::filesystem::path cache;       // of demonstrations
@@ -61,7 +61,7 @@ CellJob read_cell_job(const JsonReader& reader);
 
 /// lgabench-worker check-job
 struct CheckJob {
-  PluginInfo engine;
+  std::optional<PluginInfo> engine;  // none: `environment`, or the one that is checked, has none
   std::optional<PluginInfo> method;  // that is checked; none: the engine is
   Json options = Json::object();     // of the method, every one
   std::filesystem::path scratch;     // empty, of the method's process

@@ -53,6 +53,17 @@ const PluginInfo& Catalogue::find(const std::string& kind, const std::string& id
   throw PluginError(none_named(kind, id, known) + refusals_of(id) + found_elsewhere);
 }
 
+std::optional<PluginInfo> Catalogue::engine(const std::string& id, const EnvironmentType& environment) const {
+  if (environment.has_engine() && id == own_engine)
+    throw InputError(
+        fmt::format("engine {}: environment {} needs an engine plugin (lgabench list engines)", id, environment.id()));
+  if (environment.has_engine()) return find("engine", id);
+  if (id != own_engine)
+    throw InputError(
+        fmt::format("engine {}: environment {} has no engine plugin: expected {}", id, environment.id(), own_engine));
+  return std::nullopt;
+}
+
 std::string Catalogue::refusals_of(const std::string& id) const {
   std::string all;
   for (const auto& [file, reason] : refused)

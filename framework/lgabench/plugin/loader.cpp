@@ -80,7 +80,9 @@ std::unique_ptr<Interface> load(const PluginInfo& plugin, const char* kind) {
 
 std::unique_ptr<Method> load_method(const PluginInfo& plugin) { return load<Method>(plugin, "method"); }
 
-std::unique_ptr<PhysicsWorld> load_engine(const PluginInfo& plugin) { return load<PhysicsWorld>(plugin, "engine"); }
+std::unique_ptr<PhysicsWorld> load_engine(const std::optional<PluginInfo>& plugin) {
+  return plugin ? load<PhysicsWorld>(*plugin, "engine") : nullptr;
+}
 
 std::unique_ptr<ObservationPerturbation> load_perturbation(const PluginInfo& plugin) {
   return load<ObservationPerturbation>(plugin, "perturbation");

@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,9 @@ struct Catalogue {
   /// `kind` is "method", "engine", "perturbation", "perceiver" or "environment". @throws PluginError that lists the
   /// known ids and repeats the refusal of a file of that name.
   const PluginInfo& find(const std::string& kind, const std::string& id) const;
+  /// The engine on which cells of that environment play that say `id`; none where the environment has no engine plugin.
+  /// @throws InputError for own_engine where there must be a plugin, and for another id where there is none; as find().
+  std::optional<PluginInfo> engine(const std::string& id, const EnvironmentType& environment) const;
   /// "; FILE was refused: REASON" for each file of that name, and for each directory.
   std::string refusals_of(const std::string& id) const;
 };
@@ -75,7 +79,8 @@ Catalogue scan_plugins(const std::vector<fs::path>& directories);
 /// @throws PluginError if the file changed since it was read, cannot be opened (names the undefined symbol), or its
 /// factory throws or returns nothing.
 std::unique_ptr<Method> load_method(const PluginInfo& plugin);
-std::unique_ptr<PhysicsWorld> load_engine(const PluginInfo& plugin);
+/// Null for none.
+std::unique_ptr<PhysicsWorld> load_engine(const std::optional<PluginInfo>& plugin);
 std::unique_ptr<ObservationPerturbation> load_perturbation(const PluginInfo& plugin);
 std::unique_ptr<Perceiver> load_perceiver(const PluginInfo& plugin);
 /// Makes an environment's plugin known, which is opened when find_environment() is asked for its id. @throws as

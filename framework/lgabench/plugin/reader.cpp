@@ -253,6 +253,8 @@ PluginInfo inspect_plugin(const fs::path& file) {
   if (!is_name(plugin.id))
     throw PluginError(
         fmt::format("descriptor: id \"{}\", expected lower-case letters, digits and underscores", plugin.id));
+  if (plugin.kind == "engine" && plugin.id == own_engine)
+    throw PluginError(fmt::format("descriptor: id \"{}\" stands for no engine plugin, expected another", plugin.id));
   plugin.version = text(d.version, "version");
   plugin.summary = text(d.summary, "summary");
   const std::string declarations = text(d.options_json, "options");

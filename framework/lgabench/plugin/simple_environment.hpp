@@ -45,6 +45,7 @@ class SimpleEnvironment : public EnvironmentType {
   Scene sample(const Scenario& scenario, const SceneRequest& request, int index) const override;
   /// As reset() shows it.
   Observation draw(const Scene& scene, const View& view) const override;
+  bool has_engine() const override { return false; }
   std::unique_ptr<Environment> make(std::unique_ptr<PhysicsWorld> engine, const Scenario& scenario) const override;
 
  protected:

@@ -31,11 +31,10 @@ void check(const JsonReader& reader, const Messages& messages) {
     return job.perturbation->kind == "perceiver" ? check_perceiver(perturbation, phase)
                                                  : check_perturbation(perturbation, phase);
   };
-  const CheckReport report = job.perturbation ? on_perturbation()
-                             : job.method     ? on_method()
-                             : job.checked_environment
-                                 ? check_environment(job.checked_environment->id, job.engine, phase)
-                                 : check_engine(job.engine, job.environment, phase);
+  const CheckReport report = job.perturbation          ? on_perturbation()
+                             : job.method              ? on_method()
+                             : job.checked_environment ? check_environment(job.checked_environment->id, job.engine, phase)
+                                                       : check_engine(job.engine.value(), job.environment, phase);
   write_file(job.report, canonical(to_json(report)) + '\n');
 }
 

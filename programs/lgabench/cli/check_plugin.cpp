@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string_view>
 
 #include <lgabench/abstraction/reading.hpp>
@@ -133,7 +134,7 @@ struct CheckProcess {
   }
 };
 
-std::array<CheckProcess, 2> two_processes(const PluginInfo& plugin, const PluginInfo& engine,
+std::array<CheckProcess, 2> two_processes(const PluginInfo& plugin, const std::optional<PluginInfo>& engine,
                                           const CheckPluginArguments& a, const PoolOptions& pool,
                                           const fs::path& scratch) {
   CheckJob job;
@@ -172,6 +173,18 @@ void judge_agreement(const CheckReport& first, const CheckReport& second, CheckR
                "look for values that were never set, addresses that are compared, a clock, a shared file");
 }
 
+// What the plugin is checked on. @throws InputError for an engine in an environment that has none.
+std::optional<PluginInfo> engine_for(const PluginInfo& plugin, const Catalogue& catalogue,
+                                     const std::string& environment) {
+  const std::string played = plugin.kind == "environment" ? plugin.id
+                             : environment.empty()        ? environment_ids().front()
+                                                          : environment;
+  if (plugin.kind == "environment") add_environment(plugin);
+  const EnvironmentType& type = find_environment(played);
+  if (plugin.kind == "engine" && type.has_engine()) return plugin;
+  return catalogue.engine(plugin.kind == "engine" ? plugin.id : default_engine(catalogue, type), type);
+}
+
 // Two processes use the plugin: their findings, and whether they agree. Returns how many findings are printed already.
 std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const CheckPluginArguments& a,
                   CheckReport& report) {
@@ -182,7 +195,7 @@ std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
 
   const Scratch scratch("check");
   const PoolOptions pool{1, a.timeout_s, check_memory_gib(a.memory_gib)};
-  const PluginInfo& engine = plugin.kind == "engine" ? plugin : default_engine(catalogue);
+  const std::optional<PluginInfo> engine = engine_for(plugin, catalogue, a.environment);
   std::array<CheckProcess, 2> both = two_processes(plugin, engine, a, pool, scratch.path);
   const auto make = [&](std::size_t i) {
     fs::create_directory(both[i].job.scratch);

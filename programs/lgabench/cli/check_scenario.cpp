@@ -152,8 +152,9 @@ int check_scenario(const CheckScenarioArguments& a) {
                             : is_file ? in_suite(scenario_of(a.file).id)
                                       : in_suite(a.file);
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
-  const PluginInfo& engine = a.engine.empty() ? default_engine(catalogue) : catalogue.find("engine", a.engine);
-  const auto environment = make_environment(scenario, load_engine(engine));
+  const EnvironmentType& type = *scenario.environment;
+  const std::string engine = a.engine.empty() ? default_engine(catalogue, type) : a.engine;
+  const auto environment = make_environment(scenario, load_engine(catalogue.engine(engine, type)));
   CheckReport report;
   report.ok("file", fmt::format("{} in {}, {} command(s), {} arm(s)", scenario.task, scenario.environment->id(),
                                 scenario.commands.size(), scenario.tests.size()));

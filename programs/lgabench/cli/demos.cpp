@@ -52,15 +52,16 @@ void write(const DemosArguments& a) {
     throw InputError("demos: expected SCENARIO and --out FILE.hdf5, or --inspect FILE");
   const Scenario scenario = load_scenario(a.scenario);
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
-  const PluginInfo& engine = a.engine.empty() ? default_engine(catalogue) : catalogue.find("engine", a.engine);
-  const auto environment = make_environment(scenario, load_engine(engine));
+  const EnvironmentType& type = *scenario.environment;
+  const std::string engine = a.engine.empty() ? default_engine(catalogue, type) : a.engine;
+  const auto environment = make_environment(scenario, load_engine(catalogue.engine(engine, type)));
   const std::string layout = layout_of(scenario, a.layout);
   std::vector<Scene> scenes;
   const std::vector<Selection> selections =
       a.selection.empty() ? std::vector<Selection>() : selections_of(a.selection, scenario);
   for (int i = 0; i < a.n; ++i) scenes.push_back(training_scene(scenario, layout, selections, a.seed, i));
   const Needs needs{Needs::Targets::truth, a.noisy, a.noise};
-  Circumstances circumstances{scenario.id, engine.id, layout, "train", a.seed, environment->action_space(), {}};
+  Circumstances circumstances{scenario.id, engine, layout, "train", a.seed, environment->action_space(), {}};
   Selected selected;
   for (std::size_t c = 0; c < scenario.commands.size(); ++c)
     selected.instructions.push_back(

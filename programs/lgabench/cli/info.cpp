@@ -117,6 +117,7 @@ Json to_json(const EnvironmentType& environment) {
           {"id", environment.id()},
           {"tasks", tasks},
           {"failures", environment.failures()},
+          {"has_engine", environment.has_engine()},
           {"action", lgabench::to_json(environment.action_space())}};
 }
 
@@ -127,6 +128,7 @@ void print_info(const EnvironmentType& environment) {
               fmt::join(task.layouts, ", "), fmt::join(task.failures, ", "), task.example);
     if (task.second) to_stdout("    second set  {}, {}\n", task.second->id, task.second->phrase);
   }
+  if (!environment.has_engine()) to_stdout("  engine      {}: no engine plugin\n", own_engine);
   to_stdout("  failures    {}\n  action\n", fmt::join(environment.failures(), ", "));
   std::size_t width = 0;
   for (const ActionNumber& number : environment.action_space().numbers) width = std::max(width, number.name.size());

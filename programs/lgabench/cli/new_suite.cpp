@@ -80,7 +80,7 @@ Json suite_json(const NewSuiteArguments& a, const std::vector<Scenario>& scenari
           {"environment", scenarios.front().environment->id()},
           {"scenarios", ids},
           {"layouts", {layout_of(scenarios)}},
-          {"engines", {default_engine(scan_plugins(plugin_directories())).id}},
+          {"engines", {default_engine(scan_plugins(plugin_directories()), *scenarios.front().environment)}},
           {"methods", methods},
           {"demonstrations", {5, 20}},
           {"seeds", {0, 1, 2}},

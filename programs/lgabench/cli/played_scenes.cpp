@@ -46,7 +46,7 @@ Environment* PlayedScenes::on(const std::string& engine, const Scenario& scenari
   std::unique_ptr<Environment>& made = environments_[{engine, scenario.environment->id(), std::move(world)}];
   if (made) return made.get();
   try {
-    made = make_environment(scenario, load_engine(catalogue_.find("engine", engine)));
+    made = make_environment(scenario, load_engine(catalogue_.engine(engine, *scenario.environment)));
   } catch (const PluginError&) {
     return nullptr;
   }

@@ -166,8 +166,9 @@ Played play(const Catalogue& catalogue, const Recorded& recorded, int zoom) {
   };
   std::unique_ptr<Environment> environment;
   const auto look = [&](const std::optional<Tool>& tool) { add(environment->observe(), tool); };
-  environment = make_environment(
-      scenario, std::make_unique<WatchedWorld>(load_engine(catalogue.find("engine", cell.engine)), frame_s, look));
+  auto world = load_engine(catalogue.engine(cell.engine, type));
+  if (world) world = std::make_unique<WatchedWorld>(std::move(world), frame_s, look);
+  environment = make_environment(scenario, std::move(world));
   const Observation first = environment->reset(scene);
   add(first, std::nullopt);
   const Picture input = enlarged(first, selection ? goal_mask(first, *selection) : std::vector<std::uint8_t>());

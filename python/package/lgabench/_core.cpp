@@ -153,7 +153,7 @@ class Player {
  private:
   static std::unique_ptr<Environment> made(const Scenario& scenario, const std::string& engine) {
     const WorkersArithmetic arithmetic;  // opening a plugin changes the thread's mode
-    return make_environment(scenario, load_engine(plugins().find("engine", engine)));
+    return make_environment(scenario, load_engine(plugins().engine(engine, *scenario.environment)));
   }
 
   std::shared_ptr<const Scenario> scenario_;
@@ -439,6 +439,7 @@ NB_MODULE(_core, m) {
       .def_ro("id", &Scenario::id)
       .def_ro("task", &Scenario::task)
       .def_prop_ro("environment", [](const Scenario& s) { return s.environment->id(); })
+      .def_prop_ro("has_engine", [](const Scenario& s) { return s.environment->has_engine(); })
       .def_prop_ro("commands", &Scenario::utterances)
       .def_prop_ro("layouts", [](const Scenario& s) { return layouts_of(s); })
       .def_prop_ro("arms",

@@ -33,7 +33,7 @@ def wilson(successes: int, episodes: int) -> tuple[float, float]:
 
 def evaluate(act: Callable[[Observation, str], numpy.typing.ArrayLike], scenario: Union[str, Scenario, Environment],
              episodes: int = 100, *, arm: Optional[str] = None, layout: Optional[str] = None, seed: int = 0,
-             own_scenes: Optional[int] = None, engine: str = "mujoco", strict: bool = False,
+             own_scenes: Optional[int] = None, engine: Optional[str] = None, strict: bool = False,
              reset: Optional[Callable[[], object]] = None) -> Result:
     """Plays the first `episodes` test scenes: act(observation, utterance) -> an action, in metres. It is called once an episode,
     in tasks of several steps until the episode is over; reset() before each episode.

@@ -154,7 +154,7 @@ class SceneEnv(gymnasium.Env[dict[str, Any], numpy.typing.NDArray[numpy.float32]
     metadata = {"render_modes": ["rgb_array"], "render_fps": 1}
 
     def __init__(self, scenario: Union[str, Scenario, None] = None, *, path: Optional[Path] = None, split: str = "train",
-                 engine: str = "mujoco", layout: Optional[str] = None, arm: Optional[str] = None, scene_seed: int = 0,
+                 engine: Optional[str] = None, layout: Optional[str] = None, arm: Optional[str] = None, scene_seed: int = 0,
                  reward_mode: str = "sparse", render_mode: Optional[str] = None, stride: int = 1) -> None:
         self.scenario = scenario if isinstance(scenario, Scenario) else Scenario(scenario, path=path)
         self._reward = _Reward(reward_mode, self.scenario)
@@ -221,7 +221,7 @@ class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
     metadata = {"render_modes": ["rgb_array"], "render_fps": 1, "autoreset_mode": AutoresetMode.SAME_STEP}
 
     def __init__(self, scenario: Union[str, Scenario, None] = None, num_envs: int = 1, *, path: Optional[Path] = None,
-                 split: str = "train", engine: str = "mujoco", layout: Optional[str] = None, arm: Optional[str] = None,
+                 split: str = "train", engine: Optional[str] = None, layout: Optional[str] = None, arm: Optional[str] = None,
                  scene_seed: int = 0, threads: Optional[int] = None,
                  autoreset_mode: Union[AutoresetMode, str] = AutoresetMode.SAME_STEP, reward_mode: str = "sparse",
                  render_mode: Optional[str] = None) -> None:

@@ -76,6 +76,7 @@ class Scenario:
         self.id: str = self._core.id
         self.task: str = self._core.task
         self.environment: str = self._core.environment
+        self.usual_engine = "mujoco" if self._core.has_engine else "own"  # "own": the environment has no engine plugin
         self.commands: list[str] = self._core.commands
         self.layouts: list[str] = self._core.layouts
         self.arms: list[str] = self._core.arms
@@ -167,11 +168,11 @@ class Environment:
     time: a second thread's call meanwhile raises RuntimeError, as does a call out of order. With `shadows`, observations
     say whose shadow is where, as for a method that needs it."""
 
-    def __init__(self, scenario: Union[str, Scenario], engine: str = "mujoco", layout: Optional[str] = None, *,
+    def __init__(self, scenario: Union[str, Scenario], engine: Optional[str] = None, layout: Optional[str] = None, *,
                  shadows: bool = False) -> None:
         self.scenario = as_scenario(scenario)
-        self.engine, self.layout = engine, layout_of(self.scenario, layout)
-        self._one: Optional[_core.Environment] = _core.Environment(self.scenario._core, engine, self.layout, shadows)
+        self.engine, self.layout = engine or self.scenario.usual_engine, layout_of(self.scenario, layout)
+        self._one: Optional[_core.Environment] = _core.Environment(self.scenario._core, self.engine, self.layout, shadows)
         self._rows: numpy.typing.NDArray[numpy.int16]
 
     @property
@@ -257,11 +258,11 @@ class Pool:
     terminated: numpy.typing.NDArray[numpy.bool_]
     truncated: numpy.typing.NDArray[numpy.bool_]
 
-    def __init__(self, scenario: Union[str, Scenario], count: int, threads: Optional[int] = None, engine: str = "mujoco",
+    def __init__(self, scenario: Union[str, Scenario], count: int, threads: Optional[int] = None, engine: Optional[str] = None,
                  layout: Optional[str] = None) -> None:
         self.scenario = as_scenario(scenario)
-        self.engine, self.layout = engine, layout_of(self.scenario, layout)
-        self._pool = _core.Pool(self.scenario._core, engine, self.layout, count, threads or _core.usable_cores())
+        self.engine, self.layout = engine or self.scenario.usual_engine, layout_of(self.scenario, layout)
+        self._pool = _core.Pool(self.scenario._core, self.engine, self.layout, count, threads or _core.usable_cores())
 
     def __reduce__(self) -> NoReturn:
         refuse_copies()
