@@ -53,7 +53,8 @@ def copy_package(build, root):
     for file in sorted((build / "python/lgabench").iterdir()):
         if file.name not in ("_install", "__pycache__"):
             shutil.copy(file, root / "lgabench")
-    shutil.copytree(SOURCE / "python/lgabench_method", root / "lgabench_method", ignore=shutil.ignore_patterns("__pycache__"))
+    for package in ("lgabench_method", "lgabench_environment"):
+        shutil.copytree(SOURCE / "python" / package, root / package, ignore=shutil.ignore_patterns("__pycache__"))
     return install
 
 

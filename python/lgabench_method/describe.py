@@ -3,7 +3,9 @@ import ast
 import hashlib
 import importlib.metadata
 import json
+import os
 import pathlib
+import re
 import site
 import sys
 import sysconfig
@@ -53,6 +55,47 @@ def _versions(modules):
         for owner in owners.get(module, []):
             versions[owner] = importlib.metadata.version(owner)
     return versions
+
+
+def packages(names):
+    """Versions of these distributions and of all that they need, as far as they are installed, and what chooses a renderer."""
+    versions, waiting = {"python": ".".join(map(str, sys.version_info[:3]))}, list(names)
+    while waiting:
+        name = re.sub("[-_.]+", "-", waiting.pop()).lower()
+        if name in versions:
+            continue
+        try:
+            versions[name] = importlib.metadata.version(name)
+        except importlib.metadata.PackageNotFoundError:
+            continue
+        needs = importlib.metadata.requires(name) or []
+        waiting += [re.match("[A-Za-z0-9._-]+", need)[0] for need in needs if "extra ==" not in need]
+    versions.update({name: os.environ[name] for name in ("MUJOCO_GL", "PYOPENGL_PLATFORM") if name in os.environ})
+    return versions
+
+
+def _pairs_of(found, name, members):
+    """Tuples, each with a value for each of the members, as objects; anything else as it is, for lgabench to refuse."""
+    listed = found.get(name, [])
+    if not isinstance(listed, (list, tuple)):
+        return listed
+    return [dict(zip(members, one)) if isinstance(one, (list, tuple)) and len(one) == len(members) else one for one in listed]
+
+
+def _environment(found, file):
+    """What an environment says of itself; lgabench checks it (host/python_environment.cpp)."""
+    number, defaults = ("name", "unit", "low", "high"), {
+        "places": [], "rotations": [], "packages": [], "scenario_members": [], "scene_members": [], "network": False,
+        "memory_gib": 4, "time_limit_s": 120}
+    said = {name: found[name] for name in ("tasks", "failures", "space", "picture", "most_instances") if name in found}
+    said.update({name: found.get(name, default) for name, default in defaults.items()})
+    for name, members in (("actions", number), ("state", number), ("things", ("object_type", "texture"))):
+        if name in found or name == "state":
+            said[name] = _pairs_of(found, name, members)
+    try:
+        return json.loads(json.dumps(said, allow_nan=False))
+    except (TypeError, ValueError) as error:
+        raise NoMethod(f"{file}: expected attributes that JSON has: {error}") from error
 
 
 def _files(folder, module):
@@ -143,7 +186,11 @@ def describe(written):
     if not isinstance(declares, bool):
         raise NoMethod(f"{file}: questionnaire: expected True or False")
     functions = {node.name for node in classes[class_name].body if isinstance(node, ast.FunctionDef)}
-    kind = "perturbation" if "perceive" in functions else "perceiver" if "read" in functions else "method"
+    kind = "environment" if {"reset", "step"} <= functions else "perturbation" if "perceive" in functions else "perceiver" if "read" in functions else "method"
+    said = _environment(found, file) if kind == "environment" else None
+    names = said["packages"] if said else []
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        raise NoMethod(f"{file}: packages: expected names of distributions")
     return {"file": str(real), "class": class_name, "kind": kind, "axis": _axis(found, file) if kind == "perturbation" else None,
             "id": _text(found, "id", file.stem, file), "version": _text(found, "version", "0", file),
             "summary": _text(found, "summary", (ast.get_docstring(classes[class_name]) or "").split("\n")[0], file),
@@ -151,4 +198,4 @@ def describe(written):
             "questionnaire": declares,
             "selects_alone": kind == "method" and "learn" not in functions and not classes[class_name].bases,
             "sha256": hashlib.sha256(source).hexdigest(),
-            "versions": {**_versions(_imports(tree) | own), **beside}}
+            "environment": said, "versions": {**_versions(_imports(tree) | own), **(packages(names) if said else {}), **beside}}

@@ -310,7 +310,8 @@ class PerturbationHost:
 
 def _place(error):
     """The line of the method's own file from which the error came, as " (mine.py:19)"; "" for one from elsewhere."""
-    of_others = (str(pathlib.Path(__file__).parent), sysconfig.get_path("stdlib"), "<")
+    here = pathlib.Path(__file__).parent
+    of_others = (str(here), str(here.parent / "lgabench_environment"), sysconfig.get_path("stdlib"), "<")
     own = [frame for frame in traceback.extract_tb(error.__traceback__)
            if not frame.filename.startswith(of_others) and "-packages/" not in frame.filename]
     return f" ({pathlib.Path(own[-1].filename).name}:{own[-1].lineno})" if own else ""
@@ -338,8 +339,12 @@ def serve(channel):
     frame = channel.receive()
     if frame is None:
         return
-    of_kind = PerturbationHost if {"perturbation", "perceiver"} & set(frame[0]) else Host
-    host = _told(channel, "plugin", of_kind, channel, frame[0], frame[2])
+    if "environment" in frame[0]:
+        from lgabench_method.serve_environment import EnvironmentHost
+        host = _told(channel, "plugin", EnvironmentHost, channel, frame[0], frame[2], load)
+    else:
+        of_kind = PerturbationHost if {"perturbation", "perceiver"} & set(frame[0]) else Host
+        host = _told(channel, "plugin", of_kind, channel, frame[0], frame[2])
     if host is None:
         return
     while frame is not None:

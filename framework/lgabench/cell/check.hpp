@@ -27,7 +27,7 @@ CheckReport check_engine(const PluginInfo& engine, const std::string& environmen
 
 /// Samples, draws and lets the oracle play scenes of every task of the environment, likewise. `engine` is for those
 /// that use one. @throws PluginError if it cannot be loaded.
-CheckReport check_environment(const std::string& id, const std::optional<PluginInfo>& engine,
+CheckReport check_environment(const PluginInfo& plugin, const std::optional<PluginInfo>& engine,
                               const CheckPhase& phase);
 
 /// Lets the perturbation perceive scenes of the environment ("": of all) at each level, forwards and backwards,

@@ -184,19 +184,19 @@ CheckReport report_of(const CheckPhase& phase, const Checks& checks) {
 
 }  // namespace
 
-CheckReport check_environment(const std::string& id, const std::optional<PluginInfo>& engine,
+CheckReport check_environment(const PluginInfo& plugin, const std::optional<PluginInfo>& engine,
                               const CheckPhase& phase) {
   const ProcessState at_first = ProcessState::now();
   return report_of(phase, [&](CheckReport& report, std::string& all, const Begins& begins) {
     begins("its description");
-    const EnvironmentType& environment = find_environment(id);
+    const EnvironmentType& environment = find_environment(plugin.id);
     judge_description(environment, report);
     for (const TaskInfo& task : environment.tasks()) {
       begins("scenes of " + task.example);
       judge_scenes(environment, task, engine, report);
       all += judge_task(task, engine, 0, of_environment, report);
     }
-    judge_leftovers(report, [&at_first] { return ProcessState::now().beyond(at_first); });
+    if (plugin.python.is_null()) judge_leftovers(report, [&at_first] { return ProcessState::now().beyond(at_first); });
   });
 }
 

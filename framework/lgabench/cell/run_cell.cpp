@@ -109,6 +109,8 @@ DemonstrationCache demonstration_cache(const CellJob& job, const Scenario& scena
   if (job.engine) take_part.emplace_back("engine");
   Json builds = Json::object();
   for (const std::string& name : take_part) builds[name] = JsonReader(job.build, "build").at(name).json();
+  if (job.environment && !job.environment->python.is_null())
+    builds["versions"] = job.environment->python.at("versions");
   const std::string world = scenario.environment->world_of(scenario);
   return {job.cache, builds,
           fmt::format("lgabench/{}-{}-v1{}{}", job.cell.environment, job.cell.engine, world.empty() ? "" : "/", world)};

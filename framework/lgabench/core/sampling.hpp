@@ -17,6 +17,8 @@ Scene without_objects(const Scenario& scenario, const SceneRequest& request, int
 /// A scene's random streams by what they are for. A value.
 using Streams = std::function<RandomStream(const std::string& purpose)>;
 
+/// What the names of a scene's streams begin with.
+std::string stream_name(const Scenario& scenario, const SceneRequest& request, int index);
 /// The streams of scene number `index`. The arm is no part of them: arms are compared scene by scene.
 Streams streams_of(const Scenario& scenario, const SceneRequest& request, int index);
 

@@ -27,6 +27,7 @@ Json to_json(const Scene& scene) {
                {"objects", std::move(objects)}});
   if (scene.friction != 1) json["friction"] = scene.friction;
   if (scene.mass != 1) json["mass"] = scene.mass;
+  if (!scene.own.is_null()) json["own"] = scene.own;
   return json;
 }
 

@@ -47,6 +47,19 @@ namespace {
 
 [[noreturn]] void fail(const char* what) { throw EngineError(refused_text(what)); }
 
+constexpr const char* of_secrets[] = {"KEY", "TOKEN", "SECRET", "PASSWORD", "CREDENTIAL"};
+
+// All of our environment that is not among them, but names that speak of secrets.
+void add_ours(std::vector<std::string>& all) {
+  for (char** one = environ; *one; ++one) {
+    const std::string entry = *one, name = entry.substr(0, entry.find('=') + 1);
+    const auto names = [&name](const char* word) { return name.find(word) != name.npos; };
+    const auto sets = [&name](const std::string& other) { return other.rfind(name, 0) == 0; };
+    if (std::none_of(std::begin(of_secrets), std::end(of_secrets), names) && std::none_of(all.begin(), all.end(), sets))
+      all.push_back(entry);
+  }
+}
+
 // Everything else of our environment stays here: secrets, and where a run lies. A user's name: the list of them cannot
 // be read, and PyTorch names its cache by it. Huge pages: a page of its own for every 4 KiB of demonstrations takes
 // longer than copying them.
@@ -69,6 +82,13 @@ std::vector<std::string> environment_of(const HostCommand& command) {
   for (const char* name : {"PATH", "LD_LIBRARY_PATH", "OPENBLAS_CORETYPE"})
     if (const char* value = std::getenv(name)) all.push_back(fmt::format("{}={}", name, value));
   all.insert(all.end(), command.also_set.begin(), command.also_set.end());
+  if (command.trusted) {
+    const auto is_users = [](const std::string& one) {
+      return one.rfind("HOME=", 0) == 0 || one.rfind("USER=", 0) == 0 || one.rfind("LOGNAME=", 0) == 0;
+    };
+    all.erase(std::remove_if(all.begin(), all.end(), is_users), all.end());
+    add_ours(all);
+  }
   return all;
 }
 
@@ -156,6 +176,7 @@ HostProcess::HostProcess(const HostCommand& command)
       ::signal(SIGINT, SIG_DFL);
     else
       ::setsid();
+    if (command.offline && has_seccomp() && !refuse_internet()) return false;
     return !command.confinement || command.confinement->apply(theirs.fd);
   };
   pid_ = start_process(start);
@@ -236,7 +257,7 @@ void HostProcess::pass_on_output() {
     std::fflush(stdout);
     [[maybe_unused]] const ssize_t written = ::write(1, block, size);  // a full disk changes no result
     if (printed_ < most && static_cast<std::size_t>(n) >= room)
-      to_stdout("\n(the method printed more than {} MiB; the rest is dropped)\n", most >> 20);
+      to_stdout("\n(it printed more than {} MiB; the rest is dropped)\n", most >> 20);
     printed_ += static_cast<std::size_t>(n);
   }
 }

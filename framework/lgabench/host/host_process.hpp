@@ -22,6 +22,8 @@ struct HostCommand {
   std::vector<std::string> also_set;         // variables beside those of the allow-list, as NAME=value
   const Confinement* confinement = nullptr;  // lent; none: it may reach what we may
   long long memory_bytes = 0;  // of all its processes; shared memory, pipes and sockets included; 0: no limit
+  bool trusted = false;        // it has all of our environment but names that speak of secrets
+  bool offline = false;        // it may open no socket of the internet
   bool in_foreground = false;  // on our terminal, until whoever debugs it ends it
 };
 

@@ -24,6 +24,8 @@ HostCommand command_of(const HostJob& job, const Confinement* confinement) {
   } else if (job.perturb != 0) {
     command.words.insert(command.words.end(), {"--perturb", std::to_string(job.perturb)});
   }
+  command.trusted = job.trusted;
+  command.offline = job.offline;
   if (job.debugger) {
     command.words.insert(command.words.begin(), job.debugger->begin(), job.debugger->end());
     command.in_foreground = true;
@@ -43,6 +45,8 @@ Json plugin_json(const PluginInfo& plugin) {
   Json json{{"file", fs::absolute(plugin.file).string()}, {"sha256", plugin.sha256}};
   if (!plugin.python.is_null())
     for (const char* member : {"class", "versions"}) json[member] = plugin.python.at(member);
+  if (plugin.python.is_object() && plugin.python.contains("environment"))
+    json["packages"] = plugin.python["environment"].at("packages");
   return json;
 }
 
@@ -96,6 +100,7 @@ void tell_who_is_awaited(std::function<void(const std::string& whom)> tell) { te
 HostSession::HostSession(const HostJob& job)
     : whom_(fmt::format("plugin {} ({})", job.plugin.id, job.plugin.kind)),
       layout_(layout_of(job)),
+      reply_limit_s_(job.reply_limit_s),
       confinement_(job.confined ? std::make_unique<Confinement>(reach_of(job)) : nullptr),
       process_(command_of(job, confinement_.get())),
       channel_(process_.take_socket(), [this](short events) { wait(events); }),
@@ -117,6 +122,8 @@ void HostSession::wait(short events) {
     broken_ = "ran out of memory";
     throw PluginOutOfMemory(whom_);
   }
+  if (reply_limit_s_ > 0 && Clock::now() - asked_ > std::chrono::duration<double>(reply_limit_s_))
+    throw MethodGone(fmt::format("it did not answer within {:g} s (its time_limit_s)", reply_limit_s_), 0);
   if (is_told_ || Clock::now() - asked_ < std::chrono::milliseconds(500)) return;
   is_told_ = true;
   teller()(whom_);

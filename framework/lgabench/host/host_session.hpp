@@ -32,6 +32,8 @@ struct HostJob {
   std::optional<std::vector<std::string>> debugger{};
   std::string task{};     // of the environment, whose stations and state a method is told; "": it is told of none
   bool may_stop = false;  // as in Services
+  bool trusted = false, offline = false;  // of an environment: as in HostCommand
+  double reply_limit_s = 0;               // of each call; 0: no limit
 };
 
 /// Calls `tell` in all later conversations of this process: with the plugin whose process has not answered for half a
@@ -93,6 +95,7 @@ class HostSession {
   const std::string whom_;  // "plugin ID (KIND)"
   const host::Layout layout_;
   Clock::time_point asked_{};
+  const double reply_limit_s_;
   bool is_told_ = false;    // that this one is awaited
   std::string last_words_;  // of what ends its process
   std::unique_ptr<Confinement> confinement_;

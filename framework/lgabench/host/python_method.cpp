@@ -12,12 +12,14 @@
 #include <fstream>
 #include <iterator>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/descriptor.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/process.hpp>
 #include <lgabench/core/refused.hpp>
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/host/installed_methods.hpp>
+#include <lgabench/host/python_environment.hpp>
 #include <lgabench/host/reach.hpp>
 #include <lgabench/plugin/reader.hpp>
 
@@ -37,8 +39,8 @@ constexpr const char* start =
 // What an interpreter is found by, and its packages: no key or token of whoever names a stranger's method.
 std::vector<std::string> describing_environment() {
   std::vector<std::string> all{"LC_ALL=C.UTF-8", "PYTHONDONTWRITEBYTECODE=1", "OPENBLAS_NUM_THREADS=1"};
-  for (const char* name :
-       {"PATH", "HOME", "LD_LIBRARY_PATH", "PYTHONUSERBASE", "PYTHONNOUSERSITE", "PYENV_ROOT", "PYENV_VERSION"})
+  for (const char* name : {"PATH", "HOME", "LD_LIBRARY_PATH", "PYTHONUSERBASE", "PYTHONNOUSERSITE", "PYENV_ROOT",
+                           "PYENV_VERSION", "MUJOCO_GL", "PYOPENGL_PLATFORM"})
     if (const char* value = std::getenv(name)) all.push_back(fmt::format("{}={}", name, value));
   return all;
 }
@@ -208,6 +210,10 @@ PluginInfo describe_python(const std::string& written, const std::string& interp
           .only({"default", "help", "source", "values", "min", "max", "needs"});
     for (const char* member : {"class", "interpreter", "reads", "selects_alone", "user_base", "versions"})
       plugin.python[member] = reader.at(member).json();
+    if (plugin.kind == "environment") {
+      plugin.python["environment"] = reader.at("environment").json();
+      expect_environment(plugin);
+    }
     plugin.fingerprint = canonical(plugin.python["versions"]);
   } catch (const InputError& e) {
     throw PluginError(fmt::format("{}: {}", written, e.what()));
@@ -234,16 +240,28 @@ std::string with_python_method(const std::string& row, const std::string& interp
 }
 
 Catalogue plugins_at(const std::vector<fs::path>& paths, const std::string& interpreter) {
-  std::vector<fs::path> in_python = paths, others;
-  const auto is_other = [](const fs::path& path) { return path.string().find(".py:") == std::string::npos; };
-  std::copy_if(paths.begin(), paths.end(), std::back_inserter(others), is_other);
-  in_python.erase(std::remove_if(in_python.begin(), in_python.end(), is_other), in_python.end());
-  const std::vector<fs::path> directories = plugin_directories(others);
+  const auto is_python = [](const fs::path& path) { return is_python_method(path.string()); };
+  const std::vector<fs::path> directories = plugin_directories(paths);
   Catalogue catalogue = scan_plugins(directories);
-  for (const fs::path& one : others) warn_of_home(fs::is_directory(one) ? one : fs::absolute(one).parent_path());
+  for (const fs::path& one : paths)
+    if (!is_python(one)) warn_of_home(fs::is_directory(one) ? one : fs::absolute(one).parent_path());
   for (const fs::path& directory : directories)
     if (is_site_packages(directory)) add_installed_methods(directory, interpreter, catalogue);
-  for (const fs::path& path : in_python) add_once(describe_python(path.string(), interpreter), catalogue);
+  const auto add = [&](const fs::path& path) {
+    const PluginInfo plugin = describe_python(path.string(), interpreter);
+    if (plugin.kind == "environment") add_environment(plugin);
+    add_once(plugin, catalogue);
+  };
+  for (const fs::path& path : paths)
+    if (is_python(path)) add(path);
+  for (const fs::path& path : directories) {  // of $LGABENCH_PLUGIN_PATH: a broken one stops nothing else
+    if (!is_python(path) || contains(paths, path)) continue;
+    try {
+      add(path);
+    } catch (const Error& e) {
+      catalogue.refused.push_back({path, e.what()});
+    }
+  }
   add_axes(catalogue);
   return catalogue;
 }

@@ -10,6 +10,7 @@
 #include <seccomp.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
@@ -200,6 +201,20 @@ constexpr int last_known = 450;
 bool has_seccomp() {
   const std::uint32_t action = SECCOMP_RET_ERRNO;
   return ::syscall(SYS_seccomp, SECCOMP_GET_ACTION_AVAIL, 0, &action) == 0;
+}
+
+bool refuse_internet() {
+  if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return false;
+  scmp_filter_ctx filter = ::seccomp_init(SCMP_ACT_ALLOW);
+  if (!filter) return false;
+  bool is_added =
+      ::seccomp_rule_add(filter, SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(io_uring_setup), 0) == 0;  // it opens some
+  for (const int family : {AF_INET, AF_INET6, AF_PACKET, AF_VSOCK})
+    is_added = is_added && ::seccomp_rule_add(filter, SCMP_ACT_ERRNO(EACCES), SCMP_SYS(socket), 1,
+                                              SCMP_A0_32(SCMP_CMP_EQ, static_cast<std::uint32_t>(family))) == 0;
+  const bool is_loaded = is_added && ::seccomp_load(filter) == 0;
+  ::seccomp_release(filter);
+  return is_loaded;
 }
 
 bool allow_system_calls(bool network, int socket) {

@@ -18,6 +18,10 @@ bool has_seccomp();
 /// where it refused.
 bool allow_system_calls(bool network, int socket);
 
+/// Likewise, in a process that is not confined otherwise: it can open no socket of the internet, nor can what it
+/// starts.
+bool refuse_internet();
+
 /// Calls that wait for whoever started the process: those that are refused, and those that start a process or a
 /// thread, which it lets go on.
 class NotedCalls {

@@ -76,8 +76,10 @@ std::vector<fs::path> plugin_directories(const std::vector<fs::path>& extra) {
   std::vector<fs::path> all{shipped_plugin_directory()};
   if (const char* listed = std::getenv("LGABENCH_PLUGIN_PATH")) {
     std::istringstream parts(listed);
-    for (std::string part; std::getline(parts, part, ':');)
+    for (std::string part, rest; std::getline(parts, part, ':');) {
+      if (fs::path(part).extension() == ".py" && std::getline(parts, rest, ':')) part += ":" + rest;  // FILE.py:CLASS
       if (!part.empty()) all.emplace_back(part);
+    }
   }
   all.insert(all.end(), extra.begin(), extra.end());
   return all;
@@ -95,6 +97,7 @@ Catalogue scan_plugins(const std::vector<fs::path>& directories) {
   std::set<fs::path> seen;  // a directory named twice is one directory
   for (const fs::path& directory : directories) {
     std::error_code error;
+    if (directory.string().find(".py:") != std::string::npos) continue;  // host/python_method.hpp
     if (!seen.insert(fs::weakly_canonical(directory, error)).second || is_site_packages(directory)) continue;
     std::vector<fs::path> files;
     const bool is_file = directory.extension() == ".so" && fs::is_regular_file(directory);

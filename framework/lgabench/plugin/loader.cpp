@@ -90,7 +90,21 @@ std::unique_ptr<ObservationPerturbation> load_perturbation(const PluginInfo& plu
 
 std::unique_ptr<Perceiver> load_perceiver(const PluginInfo& plugin) { return load<Perceiver>(plugin, "perceiver"); }
 
+static std::function<const EnvironmentType*(const PluginInfo&)>& maker_of_python() {
+  static std::function<const EnvironmentType*(const PluginInfo&)> make = [](const PluginInfo& plugin) {
+    throw PluginError(fmt::format("environment {}: it is in Python, and this program plays none", plugin.id));
+    return nullptr;
+  };
+  return make;
+}
+
+void make_python_environments(std::function<const EnvironmentType*(const PluginInfo& plugin)> make) {
+  maker_of_python() = std::move(make);
+}
+
 void add_environment(const PluginInfo& plugin) {
+  if (!plugin.python.is_null())
+    return add_environment(plugin.id, plugin.sha256, [plugin] { return maker_of_python()(plugin); });
   add_environment(plugin.id, plugin.sha256, [plugin] {
     auto type = load<EnvironmentType>(plugin, "environment");
     if (type->id() != plugin.id)

@@ -1,6 +1,7 @@
 // Finding plugins by their bytes, and loading those that fit. One thread.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -83,6 +84,8 @@ std::unique_ptr<Method> load_method(const PluginInfo& plugin);
 std::unique_ptr<PhysicsWorld> load_engine(const std::optional<PluginInfo>& plugin);
 std::unique_ptr<ObservationPerturbation> load_perturbation(const PluginInfo& plugin);
 std::unique_ptr<Perceiver> load_perceiver(const PluginInfo& plugin);
+/// Sets what makes environments of plugins in Python; without it there are none. One thread, before the others.
+void make_python_environments(std::function<const EnvironmentType*(const PluginInfo& plugin)> make);
 /// Makes an environment's plugin known, which is opened when find_environment() is asked for its id. @throws as
 /// add_environment()
 void add_environment(const PluginInfo& plugin);

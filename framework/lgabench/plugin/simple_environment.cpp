@@ -49,20 +49,26 @@ std::shared_ptr<const SceneContent> SimpleEnvironment::read_content(const Scenar
   return std::make_shared<SceneContent>();
 }
 
-Scene SimpleEnvironment::sample(const Scenario& scenario, const SceneRequest& request, int index) const {
+SimpleEnvironment::Things SimpleEnvironment::things_for(const Scenario& scenario, const SceneRequest& request,
+                                                        int index) const {
   const std::vector<std::string> layouts = layouts_of(scenario);
   if (!contains(layouts, request.layout)) throw InputError(none_named("layout", request.layout, layouts));
-  Scene scene = without_objects(scenario, request, index);
-  const Streams stream = streams_of(scenario, request, index);
-  const auto command = static_cast<std::size_t>(scene.command);
+  const auto command = static_cast<std::size_t>(without_objects(scenario, request, index).command);
   const Meaning& truth = scenario.commands[command].truth.target;
   const bool as_asked = request.arm == "train" && scenario.as_method_asks && !request.selections.empty();
-  const std::vector<Named> meant = those_of(as_asked ? request.selections[command].target : truth, about_.things, true);
-  if (meant.empty())
+  Things things{those_of(as_asked ? request.selections[command].target : truth, about_.things, true),
+                those_of(truth, about_.things, false)};
+  if (things.meant.empty())
     throw NothingToShow(fmt::format("scenario \"{}\": environment {} has nothing that is meant", scenario.id, id()));
+  return things;
+}
+
+Scene SimpleEnvironment::sample(const Scenario& scenario, const SceneRequest& request, int index) const {
+  const auto [meant, others] = things_for(scenario, request, index);
+  Scene scene = without_objects(scenario, request, index);
+  const Streams stream = streams_of(scenario, request, index);
   RandomStream target = stream("target");
   scene.objects.push_back(object_of(meant[target.below(static_cast<std::uint32_t>(meant.size()))], role::target));
-  std::vector<Named> others = those_of(truth, about_.things, false);
   for (const int i : stream("others").permutation(static_cast<int>(others.size()))) {
     const Named& other = others[static_cast<std::size_t>(i)];
     const SceneObject& chosen = scene.objects.front();

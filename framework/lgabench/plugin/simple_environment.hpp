@@ -51,6 +51,13 @@ class SimpleEnvironment : public EnvironmentType {
  protected:
   explicit SimpleEnvironment(EnvironmentDescription about) : about_(std::move(about)) {}
 
+  /// What a scene may have as its target, and what its command does not mean.
+  struct Things {
+    std::vector<Named> meant, others;
+  };
+  /// @throws InputError for a layout that there is not; NothingToShow where nothing is meant.
+  Things things_for(const Scenario& scenario, const SceneRequest& request, int index) const;
+
   /// Gives the scene's objects their places (SceneObject::position_m, yaw_rad) and Scene::parameters their values. The
   /// same arguments give the same bits. Any thread.
   virtual void place(Scene& scene, RandomStream random) const = 0;

@@ -6,6 +6,7 @@
 #include <lgabench/abstraction/openai_client.hpp>
 #include <lgabench/cell/run_cell.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/host/python_environment.hpp>
 #include <lgabench/worker/job.hpp>
 #include <lgabench/worker/verbs.hpp>
 
@@ -14,6 +15,7 @@ namespace {
 
 void run(const JsonReader& reader, const Messages& messages) {
   ::prctl(PR_SET_DUMPABLE, 0);  // no method's process reads scenes out of this one's memory
+  let_environments_start();
   const CellJob job = read_cell_job(reader);
   std::unique_ptr<ChatClient> server;
   if (job.live && job.live->asks) {

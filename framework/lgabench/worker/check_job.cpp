@@ -2,6 +2,7 @@
 // it.
 #include <lgabench/cell/check.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/host/python_environment.hpp>
 #include <lgabench/job/job.hpp>
 #include <lgabench/worker/job.hpp>
 #include <lgabench/worker/verbs.hpp>
@@ -10,6 +11,7 @@ namespace lgabench::worker {
 namespace {
 
 void check(const JsonReader& reader, const Messages& messages) {
+  let_environments_start();
   const CheckJob job = read_check_job(reader);
   perturb_heap(job.perturb);  // of an engine, which runs in this process
   std::size_t written = 0;
@@ -33,7 +35,7 @@ void check(const JsonReader& reader, const Messages& messages) {
   };
   const CheckReport report = job.perturbation          ? on_perturbation()
                              : job.method              ? on_method()
-                             : job.checked_environment ? check_environment(job.checked_environment->id, job.engine, phase)
+                             : job.checked_environment ? check_environment(*job.checked_environment, job.engine, phase)
                                                        : check_engine(job.engine.value(), job.environment, phase);
   write_file(job.report, canonical(to_json(report)) + '\n');
 }

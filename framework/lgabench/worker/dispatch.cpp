@@ -7,6 +7,7 @@
 #include <lgabench/core/exit_status.hpp>
 #include <lgabench/core/flush_denormals.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/host/python_environment.hpp>
 #include <lgabench/worker/verbs.hpp>
 
 namespace lgabench::worker {
@@ -30,6 +31,7 @@ const Verb* find_verb(std::string_view name) {
 int worker_program(int argc, char** argv) {
   open_standard_streams();
   flush_denormals();
+  know_python_environments();
   ::signal(SIGXFSZ, SIG_IGN);  // a file over the limit (ulimit -f) is an error, not the end
   const Verb* const verb = argc == 2 ? find_verb(argv[1]) : nullptr;
   if (!verb) {

@@ -21,13 +21,15 @@
 #include <lgabench/harness/missing_encoder.hpp>
 #include <lgabench/harness/suite.hpp>
 #include <lgabench/harness/suite_scenario.hpp>
+#include <lgabench/host/python_environment.hpp>
+#include <lgabench/host/python_method.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench::cli {
 namespace {
 
 struct CheckScenarioArguments {
-  std::string file, engine, suite;
+  std::string file, engine, suite, python = "python3";
   std::vector<std::string> layouts;
   fs::path out;
   int scenes = 50;
@@ -151,7 +153,7 @@ int check_scenario(const CheckScenarioArguments& a) {
   const Scenario scenario = !suite    ? scenario_of(a.file)
                             : is_file ? in_suite(scenario_of(a.file).id)
                                       : in_suite(a.file);
-  const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
+  const Catalogue catalogue = plugins_at(a.plugin_path, usual_python());
   const EnvironmentType& type = *scenario.environment;
   const std::string engine = a.engine.empty() ? default_engine(catalogue, type) : a.engine;
   const auto environment = make_environment(scenario, load_engine(catalogue.engine(engine, type)));
@@ -204,7 +206,8 @@ void add_check_scenario(CLI::App& app, int& exit) {
               "Check the scenario as this suite plays it, with its training scenes and arms");
   verb.option("--engine ENGINE", a->engine, "An engine, by plugin id (default: the one that suites use)");
   verb.option("--out FILE", a->out, "The file for the picture (default: SCENARIO.png)");
-  add_plugin_path(verb, a->plugin_path);
+  add_plugin_path(verb, a->plugin_path, any_plugin);
+  add_python(verb, a->python);
   add_scenario_path(verb);
   verb->footer("Exit 1 if there is a problem.\nExample: lgabench check-scenario round.json");
   verb->callback([a, &exit] { exit = check_scenario(*a); });

@@ -15,13 +15,15 @@
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/counted_progress.hpp>
 #include <lgabench/harness/suite.hpp>
+#include <lgabench/host/python_environment.hpp>
+#include <lgabench/host/python_method.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench::cli {
 namespace {
 
 struct DemosArguments {
-  std::string scenario, layout, engine, out, inspect, selection;
+  std::string scenario, layout, engine, out, inspect, selection, python = "python3";
   int n = 10, noisy = 0;
   double noise = .2;
   std::uint64_t seed = 0;
@@ -51,7 +53,7 @@ void write(const DemosArguments& a) {
   if (a.scenario.empty() || a.out.empty())
     throw InputError("demos: expected SCENARIO and --out FILE.hdf5, or --inspect FILE");
   const Scenario scenario = load_scenario(a.scenario);
-  const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
+  const Catalogue catalogue = plugins_at(a.plugin_path, usual_python());
   const EnvironmentType& type = *scenario.environment;
   const std::string engine = a.engine.empty() ? default_engine(catalogue, type) : a.engine;
   const auto environment = make_environment(scenario, load_engine(catalogue.engine(engine, type)));
@@ -114,7 +116,8 @@ void add_demos(CLI::App& app, int&) {
               "DART: standard deviation of the noise in the last rollout; the noise grows linearly up to it",
               within(0, 10), with_default);
   verb.option("--engine ENGINE", a->engine, "An engine, by plugin id (default: the one that suites use)");
-  add_plugin_path(verb, a->plugin_path);
+  add_plugin_path(verb, a->plugin_path, any_plugin);
+  add_python(verb, a->python);
   add_scenario_path(verb);
   verb.below("Files");
   auto* out = verb.option("--out FILE", a->out, "The HDF5 file to write");

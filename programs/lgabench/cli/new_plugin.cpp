@@ -43,17 +43,12 @@ const std::map<std::string, Library> libraries{
       "<lgabench/learning/torch_learner.hpp>)\n"}}};
 
 // Classes that a template names, and words of Python that look like one.
-const std::array<std::string, 21> other_classes{"Action",       "CloningMethod",
-                                                "Colour",       "Command",
-                                                "FeatureSet",   "FeatureSpace",
-                                                "Json",         "Method",
-                                                "None",         "False",
-                                                "True",         "Needs",
-                                                "Observation",  "ObservationPerturbation",
-                                                "Perceiver",    "Policy",
-                                                "PolicyInputs", "RandomStream",
-                                                "Selection",    "Services",
-                                                "Sum"};
+const std::array<std::string, 23> other_classes{"Environment", "Result",   "Action",       "CloningMethod",
+                                                "Colour",      "Command",  "FeatureSet",   "FeatureSpace",
+                                                "Json",        "Method",   "None",         "False",
+                                                "True",        "Needs",    "Observation",  "ObservationPerturbation",
+                                                "Perceiver",   "Policy",   "PolicyInputs", "RandomStream",
+                                                "Selection",   "Services", "Sum"};
 
 // my_method -> MyMethod
 std::string class_name(const std::string& name) {
@@ -98,9 +93,8 @@ void expect_free(const NewPluginArguments& a) {
 void new_plugin(const NewPluginArguments& a) {
   expect_plain_name("new-plugin", a.name);
   expect_free(a);
-  if (a.language == "python" && (a.kind == "engine" || a.kind == "environment"))
-    throw InputError(fmt::format(
-        "new-plugin: --language python: expected a method, a perturbation or a perceiver, an {} is in C++", a.kind));
+  if (a.language == "python" && a.kind == "engine")
+    throw InputError("new-plugin: --language python: expected another kind, an engine is in C++");
   if (!a.with.empty() && (a.kind != "method" || a.language == "python"))
     throw InputError("new-plugin: --with " + a.with + ": expected a method in C++");
   const fs::path directory = a.directory.empty() ? fs::path(a.name) : a.directory;
@@ -123,13 +117,8 @@ void new_plugin(const NewPluginArguments& a) {
                                        {"@PREFIX@", to == "README.md" ? path_word(prefix) : prefix.string()}}));
     to_stdout("{}\n", (directory / to).string());
   };
-  const bool perceives = a.kind == "perturbation" || a.kind == "perceiver";
+  const bool has_own_template = a.kind == "perturbation" || a.kind == "perceiver" || a.kind == "environment";
   if (a.kind == "perturbation") write("perturbation_suite.json.in", a.name + "_suite.json");
-  if (a.kind == "python" || a.language == "python") {
-    write((perceives ? a.kind : "python") + ".py.in", a.name + ".py");
-    write((perceives ? "python_" + a.kind : "python") + ".README.md.in", "README.md");
-    return;
-  }
   const auto write_example = [&](const std::string& example, const std::string& type,
                                  const std::string& file = ".cpp") {
     const std::string source = read_file(data_directory() / "starters" / example / (example + file));
@@ -144,6 +133,11 @@ void new_plugin(const NewPluginArguments& a) {
   };
   if (a.kind == "environment")
     for (const char* file : {"_red.json", "_blind.json", "_suite.json"}) write_example("reach2d", "Reach2d", file);
+  if (a.kind == "python" || a.language == "python") {
+    write((has_own_template ? a.kind : "python") + ".py.in", a.name + ".py");
+    write((has_own_template ? "python_" + a.kind : "python") + ".README.md.in", "README.md");
+    return;
+  }
   if (a.kind == "engine")
     write_example("kinematic", "KinematicWorld");  // the smallest engine that fulfils the contract
   else if (a.kind == "environment")
@@ -167,7 +161,7 @@ void add_new_plugin(CLI::App& app, int& exit) {
   verb.option("--kind method|engine|perturbation|perceiver|environment|python", a->kind,
               "method, engine, perturbation, perceiver or environment; python: a method in Python",
               one_of("kind", {"method", "engine", "perturbation", "perceiver", "environment", "python"}), with_default);
-  verb.option("--language c++|python", a->language, "c++, or python for a method, a perturbation or a perceiver",
+  verb.option("--language c++|python", a->language, "c++, or python for all but an engine",
               one_of("language", {"c++", "python"}), with_default);
   verb.option("--with torch|opencv", a->with,
               "For a method in C++: also link LibTorch, with a network to start from, or OpenCV",

@@ -13,6 +13,7 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/host/python_environment.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -55,6 +56,7 @@ int lgabench_program(int argc, char** argv, const char* version) {
     say_renamed("lgabench commands", "lgabench draw-commands");
   }
 
+  know_python_environments();
   int exit = ok;
   CLI::App app(about, "lgabench");
   app.set_version_flag("--version", version, "Print version, commit, build type and compiler");

@@ -16,6 +16,8 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/host/python_environment.hpp>
+#include <lgabench/host/python_method.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/record/cell.hpp>
 #include <lgabench/record/episode.hpp>
@@ -32,6 +34,7 @@ struct ReplayArguments {
   fs::path run, out;
   std::vector<std::string> episodes;
   std::vector<fs::path> plugin_path;
+  std::string python = "python3";
 };
 
 struct Recorded {
@@ -196,7 +199,7 @@ void replay(const ReplayArguments& a) {
   const bool several = a.episodes.size() > 1;
   if (ending != ".gif" && (ending != ".png" || several))
     throw InputError(several ? "replay: expected --out FILE.gif" : "replay: expected --out FILE.gif or FILE.png");
-  const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
+  const Catalogue catalogue = plugins_at(a.plugin_path, usual_python());
   std::vector<Played> all;
   std::string said;
   std::size_t longest = 0;
@@ -239,7 +242,8 @@ void add_replay(CLI::App& app, int&) {
               "scenario's first arm. Several episodes are drawn side by side, after the input of each policy",
               required);
   verb.option("--out FILE", a->out, "FILE.gif for an animation, FILE.png for a film strip", required);
-  add_plugin_path(verb, a->plugin_path);
+  add_plugin_path(verb, a->plugin_path, any_plugin);
+  add_python(verb, a->python);
   verb->footer(
       "replay carries out the recorded actions on the recorded engine, without the method. Pink marks the suction "
       "cup's "

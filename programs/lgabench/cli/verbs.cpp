@@ -23,7 +23,7 @@ std::string layout_of(const Scenario& scenario, const std::string& word) {
 }
 
 void also_for_workers(const std::string& path) {
-  if (path.find(':') != path.npos) return;  // FILE.py:CLASS, which no worker looks for
+  if (path.find(':') != path.npos && path.find(".py:") == path.npos) return;  // would be two
   const char* const listed = std::getenv("LGABENCH_PLUGIN_PATH");
   const std::string all = (listed && *listed ? listed + std::string(":") : "") + fs::absolute(path).string();
   ::setenv("LGABENCH_PLUGIN_PATH", all.c_str(), 1);

@@ -152,7 +152,8 @@ inline int jobs_of(int asked) { return asked != 0 ? asked : usable_cores(); }
 /// --python, as every verb has it that takes plugins in Python.
 template <class... More>
 void add_python(Verb& verb, std::string& python, More... more) {
-  verb.option("--python PROGRAM", python, "The interpreter for plugins in Python", with_default, more...);
+  verb.option("--python PROGRAM", python, "The interpreter for plugins in Python", with_default, more...)
+      ->each([](const std::string& program) { ::setenv("LGABENCH_PYTHON", program.c_str(), 1); });  // usual_python()
 }
 
 /// --prompt, as every verb has it that asks a server, or reads what it replied.

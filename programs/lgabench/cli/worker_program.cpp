@@ -1,18 +1,25 @@
 #include <lgabench/cli/programs.hpp>
 
 #include <algorithm>
+#include <array>
+#include <string>
 
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/flush_denormals.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
+#include <lgabench/host/python_environment.hpp>
 #include <lgabench/worker/dispatch.hpp>
 
 namespace lgabench::cli {
 
 int worker_with_programs(int argc, char** argv) {
   if (argc > 1 && worker::find_verb(argv[1])) return worker::worker_program(argc, argv);
+  know_python_environments();
+  constexpr std::array plays{"check-scenario", "demos", "render", "replay"};
+  if (argc > 1 && contains(plays, std::string(argv[1]))) let_environments_start();
   open_standard_streams();
   flush_denormals();
   int exit = ok;

@@ -1,0 +1,182 @@
+"""Environments in Python: the template of new-plugin, played, reported, replayed and verified, and ways to break it.
+
+LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 python_environment_test.py PythonEnvironments
+"""
+import contextlib
+import json
+import unittest
+
+import case
+from python_test import HAS_NUMPY, PYTHON
+
+WORD = "mine/my_world.py:MyWorld"
+TEMPLATE = ("new-plugin", "my_world", "--kind", "environment", "--language", "python", "--directory", "mine")
+BLIND = "self.scene.task == \"reach_blind\""
+
+
+class PythonCase(case.Case):
+    def setUp(self):
+        super().setUp()
+        if not HAS_NUMPY:
+            self.skipTest("no interpreter with NumPy")
+        self.call(*TEMPLATE)
+        self.file = self.dir / "mine/my_world.py"
+        self.environment["LGABENCH_SCENARIO_PATH"] = str(self.dir / "mine")
+        self.path = ("--plugin-path", WORD, "--python", PYTHON)
+
+    def change(self, old, new):
+        text = self.file.read_text()
+        self.assertIn(old, text)
+        self.file.write_text(text.replace(old, new, 1))
+
+    @contextlib.contextmanager
+    def changed(self, old, new):
+        before = self.file.read_text()
+        self.change(old, new)
+        try:
+            yield
+        finally:
+            self.file.write_text(before)
+
+    def run_suite(self, *more, expect=0):
+        return self.call("run", "mine/my_world_suite.json", "--answers", "none", "--methods", "human", "--demos", "1", "--seeds", "0",
+                         "--episodes", "2", "--set", "human.epochs=1", "--jobs", "1", "--engines", "own", "--out", "run", *self.path, *more, expect=expect)
+
+
+class PythonEnvironments(PythonCase):
+    def test_one_is_checked_run_reported_replayed_and_verified(self):
+        told = self.call("check-plugin", WORD, "--python", PYTHON).stdout
+        self.assertIn("no problem", told)
+        self.assertIn("pure: scenes in reverse order end alike, bit for bit", told)
+        self.run_suite()
+        record = json.loads((self.dir / "run/run.json").read_text())
+        self.assertIn(("environment", "my_world"), {(plugin["kind"], plugin["id"]) for plugin in record["plugins"]})
+        for cell, status in self.cells("run").values():
+            self.assertEqual((cell["engine"], status["state"]), ("own", "ok"), status.get("reason"))
+            self.assertIn("numpy", json.loads(status["build"]["python"])["environment my_world"])
+        oracle = [json.loads(line) for file in self.dir.glob("run/cells/*/episodes.jsonl")
+                  if "oracle" in (file.parent / "cell.json").read_text() for line in file.read_text().splitlines()]
+        self.assertEqual({one["failure"] for one in oracle}, {"none"})
+        self.assertIn("identical", self.call("verify", "run", *self.path).stdout)
+        cell = next(self.dir.glob("run/cells/*/episodes.jsonl")).parent.name
+        self.call("replay", "run", f"{cell}/test/0", *self.path, "--out", "episode.png")
+        self.environment.update(LGABENCH_PLUGIN_PATH=str(self.dir / WORD), LGABENCH_PYTHON=PYTHON)
+        self.call("render", "my_world_red", "--out", "scene.png")
+        self.assertIn("reach_blind", self.call("info", "my_world", *self.path).stdout)
+        self.assertIn("my_world", self.call("list", "environments", "--short", *self.path).stdout)
+
+    def test_planning_and_reports_start_no_simulator(self):
+        self.run_suite()
+        self.change("import numpy\n", "import numpy\nraise SystemExit('it was started')\n")
+        self.assertIn("my_world", self.call("list", "environments", "--short", *self.path).stdout)
+        self.run_suite("--dry-run", "--fresh")
+        self.call("report", "run")
+        said = self.run_suite("--fresh", expect=3).stderr
+        self.assertIn("failed", said)
+
+    def test_a_changed_file_computes_its_cells_again(self):
+        self.run_suite()
+        self.assertIn("0 cells computed", self.run_suite("--resume").stderr)
+        self.change("GAIN = 20, .3", "GAIN = 20, .35")
+        self.assertIn(" 0 reused", self.run_suite("--resume").stderr)
+
+    def test_axes_without_an_engine_or_views(self):
+        scenario = json.loads((self.dir / "mine/my_world_red.json").read_text())
+        for axis, works in (("sensor_noise", True), ("light_intensity", True), ("segmentation", True), ("friction_mass", False),
+                            ("camera_shift", False), ("distractors", False)):
+            scenario.update(id="own", tests=[{"arm": "test"}, {"arm": "changed", "perturbation": {axis: 1}}])
+            (self.dir / "own.json").write_text(json.dumps(scenario))
+            with self.subTest(axis):
+                done = self.call("check-scenario", "own.json", "--scenes", "2", *self.path, expect=0 if works else 2)
+                self.assertEqual(done.stderr.count("my_world") == 1, not works, done.stderr)
+
+
+class BrokenPythonEnvironments(PythonCase):
+    def reason(self, *more):
+        """Why the cells of the task reach_blind failed; those of the other task, in the same run, did not."""
+        self.run_suite("--no-reference", *more, expect=3)
+        ended = {cell["scenario"]["id"]: status for cell, status in self.cells("run").values()}
+        self.assertEqual(ended["my_world_red"]["state"], "ok")
+        self.assertEqual(ended["my_world_blind"]["state"], "failed")
+        return ended["my_world_blind"]["reason"]
+
+    def costs_a_cell(self, code, says):
+        self.change("    def reset(self, scene):\n", f"    def reset(self, scene):\n        if scene.task == 'reach_blind':\n            {code}\n")
+        self.assertRegex(self.reason(), r"environment my_world: scene \d of \w+: reset\(\): .*" + says)
+
+    def test_one_that_is_killed(self):
+        self.costs_a_cell("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", r"signal 9 \(Killed\)")
+
+    def test_one_that_ends_itself(self):
+        self.costs_a_cell("import os; os._exit(7)", "exited with 7")
+
+    def test_one_that_hangs(self):
+        self.change("    most_instances = 4", "    most_instances = 4\n    time_limit_s = 20")
+        self.costs_a_cell("import time; time.sleep(1000)", r"did not answer within 20 s \(its time_limit_s\)")
+
+    def test_one_that_floods_its_log(self):
+        self.change("    most_instances = 4", "    most_instances = 4\n    time_limit_s = 20")
+        self.costs_a_cell("while True: print('x' * 100000)", "did not answer within 20 s")
+        logs = [file.read_text() for file in self.dir.glob("run/cells/*/log.txt") if file.stat().st_size < 40 << 20]
+        self.assertTrue(any("the rest is dropped" in log for log in logs))
+
+    def test_one_that_fills_memory(self):
+        self.change("    most_instances = 4", "    most_instances = 4\n    memory_gib = .5")
+        self.costs_a_cell("self.all = [bytearray(b'x' * (1 << 26)) for _ in range(1000)]", r"out of memory: it may take 0.5 GiB \(its memory_gib\)")
+
+    def test_one_that_writes_to_its_channel(self):
+        self.costs_a_cell("import os; os.write(3, b'x' * 100)", "does it write to descriptor 3")
+
+    def test_it_reaches_no_network_unless_it_says_so(self):
+        self.costs_a_cell("import socket; socket.create_connection(('127.0.0.1', 9))", r"PermissionError: .* \(my_world.py:\d+\)")
+        self.change("    most_instances = 4", "    most_instances = 4\n    network = True")
+        self.assertIn("ConnectionRefusedError", self.reason("--fresh"))
+
+    def test_each_bad_value_has_words(self):
+        for old, new, says in (
+                ("return Observation(rgb,", "return Observation(rgb[:, :7],",
+                 r"reset\(\): .*returned rgb as uint8 of shape \(64, 7, 3\), expected uint8 of shape \(64, 128, 3\)"),
+                ("numpy.zeros((ROWS, COLUMNS), numpy.uint8)", "numpy.zeros((ROWS, COLUMNS))", r"returned ids as float64"),
+                ("        rgb[self.disc(self.at, .04)] = 255\n", "        ids[0, 0] = 9\n", "the ids hold 9, which is no instance's"),
+                ("thing.place = tuple(map(float, place))", "thing.place, thing.texture = tuple(map(float, place)), 'nowhere'",
+                 r"sample\(\): \"nowhere round\" is no name of the space tabletop"),
+                ("else self.at)", "else self.at * numpy.nan)", r"state\[0\]: expected a finite number, got nan"),
+                ("else self.at)", "else self.at + 100)", r"state: down: expected -0.5 to 0.5"),
+                ("return GAIN * (", "return numpy.nan * (", r"expert_action\(\)\[0\]: expected a finite number"),
+                ("return GAIN * (numpy.array(thing.place) - self.at)", "return [1]", r"expert_action\(\): expected 2 numbers"),
+                ("taken=reached[0].instance_id)", "taken=reached[0].instance_id) and None", "returned NoneType, expected a lgabench_environment.Result"),
+                ("success, \"\" if success else \"wrong_disc\"", "True, \"wrong_disc\"", "failure is \"wrong_disc\" of a success"),
+                ("return {\"start\"", "things[0].role = 'thing'; return {\"start\"", "role \"thing\", expected target or distractor"),
+                ("    def place(", "    def placed(", r"place\(\) or sample\(\) is missing"),
+                ("(Environment):", ":", "expected one derived from lgabench_environment.Environment")):
+            with self.subTest(says), self.changed(old, new):
+                said = self.call("demos", "my_world_red", "--n", "2", "--engine", "own", *self.path, "--out", "a.hdf5", expect=4 if "derived" in says else 3).stderr
+                self.assertRegex(said, says)
+
+    def test_check_plugin_finds_what_no_single_call_shows(self):
+        self.change(",\n             {\"id\": \"reach_blind\", \"layouts\": [\"plane\"], \"example\": \"my_world_blind\", \"most_steps\": 20, "
+                    "\"has_state\": False}]", "]")
+        for old, new, says in (("random.uniform(-1,", "numpy.random.uniform(-1,", "differs the second time"),
+                               ("return GAIN * (", "return 0 * (", "loses 10 of 10 scenes"),
+                               ("self.scene, self.steps = scene, 0", "self.scene, self.steps = scene, getattr(self, 'steps', 0)", "reset, reach")):
+            with self.subTest(says), self.changed(old, new):
+                report = json.loads(self.call("check-plugin", WORD, "--python", PYTHON, "--json", expect=1).stdout)
+                problems = " ".join(f"{one['check']}: {one['detail']}" for one in report["findings"] if one["state"] == "problem")
+                self.assertIn(says, problems)
+
+    def test_a_description_names_its_attribute(self):
+        for old, new, says in (("failures = [\"not_reached\", \"wrong_disc\"]", "", "failures"),
+                               ("(\"down\", \"m\", -.3, .3)", "(\"down\", \"m\", .3)", r"/actions/0: expected \(name, unit, low, high\)"),
+                               ("(\"down\", \"m\", -.3, .3)", "(\"down\", \"m\", .3, -.3)", "bounds of down that grow"),
+                               ("picture = (64, 128)", "picture = (ROWS, COLUMNS)", "picture"),
+                               ("picture = (64, 128)", "picture = (6400, 128)", "at most .* pixels"),
+                               ("most_instances = 4", "most_instances = 0", "most_instances"),
+                               ("\"most_steps\": 20}", "\"steps\": 20}", "steps")):
+            with self.subTest(says), self.changed(old, new):
+                said = self.call("info", "my_world", *self.path, expect=4).stderr
+                self.assertRegex(said, says)
+                self.assertEqual(said.count("\n"), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
