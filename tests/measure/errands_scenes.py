@@ -1,7 +1,7 @@
 """Tables and demonstrations of the suites `errands` and `refusing`, as errands_pilot.py draws them: names, without pictures or physics.
 
 A thing is a pair (object type, texture); what a command means is errands_meaning.py's. A scene of a pair is kept only if no sequence of
-takes is right under both commands, nor what is wanted at first right in both.
+takes is right under both commands, and what is wanted at first is not right for both.
 """
 import collections
 import functools
