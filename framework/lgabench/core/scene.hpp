@@ -39,7 +39,7 @@ struct Scene {
   int command = 0;                   // which of the scenario's commands is given
   std::vector<SceneObject> objects;  // ordered by instance_id
   double friction = 1, mass = 1;     // of what can be moved, times those of its type
-  Json own;                          // what else an environment in Python was told; null: nothing
+  Json own = nullptr;                // what else an environment in Python was told; null: nothing
 
   /// Stable over hosts and versions; covers every field.
   std::uint64_t hash() const;
