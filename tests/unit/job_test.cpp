@@ -45,7 +45,7 @@ TEST(Jobs, OfAMethodNeedItsPlugin) {
 
 TEST(Jobs, NameThePluginsThatTheyWereWrittenWith) {
   CellJob job = reference_job();
-  job.engine.sha256 = std::string(64, '0');
+  job.engine->sha256 = std::string(64, '0');
   const Json json = to_json(job);
   EXPECT_SAYS(message_of<PluginError>([&] { read_cell_job(JsonReader(json, "job")); }), "changed since the run began");
 }
