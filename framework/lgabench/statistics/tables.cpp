@@ -11,8 +11,8 @@
 #include <lgabench/abstraction/selection_text.hpp>
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/rounding.hpp>
-#include <lgabench/record/layout.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <lgabench/record/layout.hpp>
 #include <lgabench/statistics/names.hpp>
 
 namespace lgabench::statistics {
