@@ -62,7 +62,7 @@ ChatLanguageModel::ChatLanguageModel(Cassette& cassette, ChatClient* client, Cha
       asked_model_(read_asked_model(options_.model)) {
   if (options_.prompt.empty() && !asked_model_.prompt.empty()) options_.prompt = cassette.prompt();
   cassette.expect_prompt(options_.prompt);
-  if (!options_.prompt.empty()) template_ = PromptTemplate::of_text(options_.prompt);
+  template_ = PromptTemplate::of_text(options_.prompt);
   if (!asked_model_.prompt.empty() && asked_model_.prompt != template_.version())
     throw InputError(fmt::format("{}: expected replies to the prompt {}, it has none", cassette.file().string(),
                                  asked_model_.prompt));

@@ -44,9 +44,12 @@ PromptTemplate::PromptTemplate(const std::string& text, const std::string& place
 PromptTemplate::PromptTemplate(const std::string& name)
     : PromptTemplate(read_file(data_directory() / "prompts" / name), (data_directory() / "prompts" / name).string()) {}
 
-PromptTemplate PromptTemplate::of_text(const std::string& text, const std::string& place) { return {text, place}; }
+PromptTemplate PromptTemplate::of_text(const std::string& text, const std::string& place) {
+  return text.empty() ? PromptTemplate() : PromptTemplate(text, place);
+}
 
 std::string read_prompt(const fs::path& file) {
+  if (file.empty()) return "";
   constexpr std::uintmax_t most = std::uintmax_t{64} << 10;
   const std::string place = file.string(), text = read_file(file, Links::followed, most);
   if (text.find_first_not_of(" \t\r\n") == text.npos)

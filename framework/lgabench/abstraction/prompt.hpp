@@ -19,8 +19,8 @@ class PromptTemplate {
  public:
   /// @throws InputError where the file is missing or lacks a part.
   explicit PromptTemplate(const std::string& file = "selection.txt");
-  /// Of a text, as read_prompt() returns it, from `place`; its version is the text's SHA-256. @throws InputError
-  /// likewise
+  /// Of a text, as read_prompt() returns it, from `place`; its version is the text's SHA-256. Of "": selection.txt.
+  /// @throws InputError likewise
   static PromptTemplate of_text(const std::string& text, const std::string& place = "--prompt");
 
   /// The messages that ask this question about the command. The feature space is told in full.
@@ -38,8 +38,8 @@ class PromptTemplate {
 };
 
 /// A text of one's own in place of selection.txt: it has a line --- between system and user prompt, and each of
-/// selection.txt's six placeholders. @throws InputError, with file and line, for another text, an empty one, and one
-/// above 64 KiB.
+/// selection.txt's six placeholders. "" where no file is given. @throws InputError, with file and line, for another
+/// text, an empty one, and one above 64 KiB.
 std::string read_prompt(const std::filesystem::path& file);
 
 }  // namespace lgabench

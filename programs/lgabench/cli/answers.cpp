@@ -31,8 +31,6 @@ struct AnswersArguments {
   bool batch = false, any_served = false;
 };
 
-std::string prompt_of(const AnswersArguments& a) { return a.prompt.empty() ? "" : read_prompt(a.prompt); }
-
 template <class Use>
 void with_each_command(const std::string& suite_id, Use&& use) {
   const Suite suite = load_suite(suite_id);
@@ -60,9 +58,7 @@ Json batch_line(const AnswersArguments& a, const AskedModel& model, const std::s
 void write_questions(const AnswersArguments& a) {
   const bool structured = a.form == "structured";
   const AskedModel model = a.batch ? asked_model(a.model, a.request) : AskedModel{};
-  const std::string own = prompt_of(a);
-  const PromptTemplate yes_or_no = own.empty() ? PromptTemplate() : PromptTemplate::of_text(own),
-                       of_meaning("meaning.txt");
+  const PromptTemplate yes_or_no = PromptTemplate::of_text(read_prompt(a.prompt)), of_meaning("meaning.txt");
   std::string lines;
   std::set<std::string> seen;
   with_each_command(a.suite, [&](const Command& command, const FeatureSpace& space) {
@@ -177,7 +173,7 @@ class GivenReplies : public ChatClient {
 void keep_replies(const AnswersArguments& a) {
   GivenReplies replies(a.from);
   Cassette cassette(a.cassette);
-  const std::string prompt = prompt_of(a);
+  const std::string prompt = read_prompt(a.prompt);
   ChatOptions options{to_text(asked_model(a.model, a.request, prompt))};
   options.prompt = prompt;
   options.concurrency = 1;

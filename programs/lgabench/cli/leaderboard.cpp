@@ -315,7 +315,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
                                "and score what the method selects for them, on their truth as the answers");
   commands->excludes(cells)->excludes(fresh);
   verb.option("--commands N", a->verify.commands, "verify: how many commands to draw",
-              CLI::Range(leaderboard::fewest_commands, 1000), with_default)
+              CLI::Range(leaderboard::fewest_commands, leaderboard::most_commands), with_default)
       ->needs(commands);
   verb.option("--by NAME", a->verify.by, "verify, supersede: your name, as the one who computes the cells");
   verb.option("--jobs N", a->jobs,

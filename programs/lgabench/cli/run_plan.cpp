@@ -196,13 +196,13 @@ std::optional<LiveModel> live_model(const RunArguments& a, AnswerSource& answers
   }
   if (a.model.empty() || a.cassette.empty() || one_line(a.model) != a.model)
     throw InputError("--answers openai: expected --model MODEL and --cassette FILE too");
-  const std::string prompt = a.prompt.empty() ? "" : read_prompt(a.prompt);
+  const std::string prompt = read_prompt(a.prompt);
   Cassette(a.cassette).expect_prompt(prompt);
   const AskedModel model = asked_model(a.model, a.request, prompt);
   answers = LiveAnswers{to_text(model)};
   about = {{"model", to_text(model)},
            {"provider", provider(openai_from_environment())},
-           {"prompt", model.prompt.empty() ? PromptTemplate().version() : model.prompt}};
+           {"prompt", PromptTemplate::of_text(prompt).version()}};
   return LiveModel{a.cassette, true, a.max_queries, a.reply_timeout_s, a.concurrency, a.any_served, prompt};
 }
 

@@ -105,7 +105,7 @@ Answerer make_answerer(const SelectArguments& a) {
   if (file.empty()) return answerer;
   answerer.cassette = std::make_unique<Cassette>(file);
   if (live && a.model.empty()) throw InputError("--model: expected one with --answers openai");
-  const std::string prompt = a.prompt.empty() ? "" : read_prompt(a.prompt);
+  const std::string prompt = read_prompt(a.prompt);
   ChatOptions options{live ? to_text(asked_model(a.model, a.request, prompt)) : kept_model(*answerer.cassette, a.model),
                       a.concurrency,
                       a.max_queries,
@@ -341,8 +341,7 @@ void add_select(CLI::App& app, int&) {
       throw InputError("--arms: expected --names or --segments with it");
     if (!arguments->names.empty() || !arguments->segments.empty()) return score_reading(*arguments);
     if (arguments->show_prompt) {
-      const std::string& file = arguments->prompt;
-      const PromptTemplate words = file.empty() ? PromptTemplate() : PromptTemplate::of_text(read_prompt(file));
+      const PromptTemplate words = PromptTemplate::of_text(read_prompt(arguments->prompt));
       for (const Asked& asked : find_commands(*arguments)) show_prompt(asked, words);
       return;
     }

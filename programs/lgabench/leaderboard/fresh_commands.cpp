@@ -3,8 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <boost/math/distributions/hypergeometric.hpp>
 #include <set>
 
 #include <lgabench/abstraction/scene_score.hpp>
@@ -20,15 +19,11 @@ namespace {
 constexpr const char *scenario_id = "fresh_commands", *layout = "continuous", *engine = "kinematic";
 constexpr double enough_of_lga = .95, alpha = .05;
 
-double log_choose(int n, int k) { return std::lgamma(n + 1.) - std::lgamma(k + 1.) - std::lgamma(n - k + 1.); }
-
 // Of at most `few` successes among `of`, where all together have this many more among `others`.
 double p_of_so_few(int few, int of, int successes, int others) {
-  const int all = few + successes;
-  double p = 0;
-  for (int i = std::max(0, all - others); i <= few; ++i)
-    p += std::exp(log_choose(of, i) + log_choose(others, all - i) - log_choose(of + others, all));
-  return p;
+  const auto count = [](int number) { return static_cast<unsigned>(number); };
+  const boost::math::hypergeometric all(count(few + successes), count(of), count(of + others));
+  return boost::math::cdf(all, count(few));
 }
 
 struct Counts {
@@ -161,9 +156,8 @@ bool knows_fresh_commands(const std::vector<const Json*>& lines) {
 }
 
 void expect_fresh_commands(const JsonReader& line) {
-  constexpr int most = std::numeric_limits<int>::max();
-  const long long commands = line.at("commands").integer(fewest_commands, most),
-                  published = line.at("published").integer(0, most);
+  const long long commands = line.at("commands").integer(fewest_commands, most_commands),
+                  published = line.at("published").integer(0, most_published);
   line.at("exact").integer(0, commands);
   line.at("lga_exact").integer(0, commands);
   line.at("published_exact").integer(0, published);

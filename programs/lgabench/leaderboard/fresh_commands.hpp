@@ -8,7 +8,8 @@
 
 namespace lgabench::leaderboard {
 
-constexpr int fewest_commands = 20;  // of which five points are one command
+constexpr int fewest_commands = 20;                           // of which five points are one command
+constexpr int most_commands = 1000, most_published = 100000;  // a stranger's line is read in no time
 
 /// Why no command tests the entry's method: "selects nothing", "selects from demonstrations", "asks people", or that it
 /// is a reference; "" where one does.

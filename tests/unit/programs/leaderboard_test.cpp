@@ -402,6 +402,8 @@ TEST(LeaderboardEntry, ATableOfPublishedTruthsIsNoMethodForDrawnCommands) {
   EXPECT_SAYS(complaint(line, "passed", true), "/passed: expected false, by its counts");
   EXPECT_SAYS(complaint(line, "exact", 41), "/exact: expected");
   EXPECT_SAYS(complaint(line, "commands", 19), "/commands: expected");
+  EXPECT_SAYS(complaint(line, "commands", most_commands + 1), "/commands: expected");
+  EXPECT_SAYS(complaint(line, "published", most_published + 1), "/published: expected");
 }
 
 TEST(LeaderboardEntry, WhatFreshScenesFindIsSaid) {
