@@ -199,8 +199,9 @@ BRIEF_ELSEWHERE = BRIEF | {"exclusion", "last_demonstrated"}
 
 
 def rival_arms(suite):
-    """SUITE-PRESET-ARM -> what was found there, of the suite."""
-    return {name: one for name, one in RIVALS["suites"].items() if name.split("-")[0] == suite}
+    """SUITE-PRESET-ARM -> what was found there, of the suite's presets that no later one replaces."""
+    return {name: one for name, one in RIVALS["suites"].items()
+            if name.split("-")[0] == suite and not ABOUT[suite].get("presets", {}).get(name.split("-")[1], "").startswith("Kept for its entries")}
 
 
 def rivals(suite):
@@ -217,11 +218,8 @@ def rivals(suite):
             continue
         rates = [" ".join(number(by_number["rate"]) for by_number in one["rivals"][rule].values()) for one in arms.values()]
         lines.append(f"| {RULES[rule]} | {' | '.join(rates)} |")
-    leaks = [", ".join(RULES[rule] for rule in one["leaks"]) or "none" for one in arms.values()]
-    lines.append(f"| *more than 0.05 above chance, and has learned no label* | {' | '.join(leaks)} |")
-    return (f"    {RIVALS['command']}\n\nHow often a rule without a language model and without training picks the meant object"
-            f"{' and its receiver' if suite == 'fetch' else ''}, on scenes of seed {RIVALS['scene_seed']}, which no preset publishes; "
-            f"`results/measured/rivals.json` has the intervals and more rules.\n\n" + "\n".join(lines) + "\n")
+    return (f"    {RIVALS['command']}\n\nHow often a rule picks the meant object{' and its receiver' if suite == 'fetch' else ''} in scenes that no "
+            f"preset publishes (`results/measured/rivals.json` has more):\n\n" + "\n".join(lines) + "\n")
 
 
 def leaks(suite):
@@ -231,7 +229,7 @@ def leaks(suite):
     best = lambda rule: max(one["rate"] for one in arm["rivals"][rule].values())
     rules = sorted(arm["leaks"], key=best, reverse=True)
     found = ", ".join(f"{RULES[rule]} {number(best(rule))}" for rule in rules)
-    return (f"Rules without a language model find the target of the main arm (preset `{name.split('-')[1]}`) in a share of scenes above chance, "
+    return (f"Rules without a language model find the target of the main arm (preset `{name.split('-')[1]}`) more often than chance, "
             f"{number(best('random_object'))}: {found} ([all rules](#without-a-language-model)).\n")
 
 

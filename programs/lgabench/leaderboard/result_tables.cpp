@@ -44,35 +44,42 @@ double mean_of(const Rates& rates) {
   return statistics::mean(scenarios);
 }
 
-Grid along_demonstrations(const NamedTable& table, const std::string& arm) {
-  const Setting& setting = table.setting;
-  Grid grid = grid_of(table, "_demonstrations",
-                      fmt::format("Success in {}, by demonstrations", Titles(setting.suite).arm(arm)));
-  for (const NamedStanding& s : table.standings) add_named_row(grid, s);
-  for (const int n : setting.demonstrations) {
-    std::vector<Rates> rates;
-    for (const Standing& s : table.standings) rates.push_back(rates_of(*s.entry, arm, n));
-    const statistics::SharedResamples resamples(rates, setting.shared_scenes(),
-                                                fmt::format("leaderboard/results/{}/{}/{}", hash(setting), arm, n));
-    grid.heads.emplace_back(std::to_string(n));
-    grid.align += 'r';
-    for (std::size_t i = 0; i < rates.size(); ++i) {
-      const statistics::Interval interval = resamples.interval(i);
-      grid.rows[i].cells.emplace_back(Span::number(
-          fmt::format("{} [{}, {}]", fixed(mean_of(rates[i])), fixed(interval.low), fixed(interval.high))));
-    }
+// A row's mean over scenarios with its interval, of each row.
+std::vector<std::string> with_intervals(const NamedTable& table, const std::string& arm, int n) {
+  std::vector<Rates> rates;
+  for (const Standing& s : table.standings) rates.push_back(rates_of(*s.entry, arm, n));
+  const statistics::SharedResamples resamples(rates, table.setting.shared_scenes(),
+                                              fmt::format("leaderboard/results/{}/{}/{}", hash(table.setting), arm, n));
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    const statistics::Interval interval = resamples.interval(i);
+    texts.push_back(fmt::format("{} [{}, {}]", fixed(mean_of(rates[i])), fixed(interval.low), fixed(interval.high)));
   }
-  return grid;
+  return texts;
 }
 
-Grid by_arm(const NamedTable& table, const std::vector<std::string>& arms, int n) {
+// Success in the main arm at each number of demonstrations; with one number alone, in every arm.
+Grid success_grid(const NamedTable& table, const std::vector<std::string>& arms, const std::string& main, int n) {
   const Titles titles(table.setting.suite);
-  Grid grid = grid_of(table, "_arms", fmt::format("Success in every arm, {} demonstration{}", n, n == 1 ? "" : "s"));
-  for (const NamedStanding& s : table.standings) {
-    add_named_row(grid, s);
-    for (const std::string& arm : arms)
-      put(grid, titles.arm(arm), 'r', Span::number(fixed(mean_of(rates_of(*s.entry, arm, n)))));
-  }
+  const std::vector<int>& numbers = table.setting.demonstrations;
+  const bool by_number = numbers.size() > 1 || arms.size() == 1;
+  Grid grid = grid_of(table, by_number ? "_demonstrations" : "_arms",
+                      by_number ? fmt::format("Success in {}, by demonstrations", titles.arm(main))
+                                : fmt::format("Success in every arm, {} demonstration{}", n, n == 1 ? "" : "s"));
+  for (const NamedStanding& s : table.standings) add_named_row(grid, s);
+  const auto add_column = [&](const std::string& head, const std::vector<std::string>& texts) {
+    grid.heads.emplace_back(head);
+    grid.align += 'r';
+    for (std::size_t i = 0; i < texts.size(); ++i) grid.rows[i].cells.emplace_back(Span::number(texts[i]));
+  };
+  if (by_number)
+    for (const int number : numbers) add_column(std::to_string(number), with_intervals(table, main, number));
+  else
+    for (const std::string& arm : arms) {
+      std::vector<std::string> means;
+      for (const Standing& s : table.standings) means.push_back(fixed(mean_of(rates_of(*s.entry, arm, n))));
+      add_column(titles.arm(arm), arm == main ? with_intervals(table, arm, n) : means);
+    }
   return grid;
 }
 
@@ -88,21 +95,19 @@ void add_results(document::Section& section, const NamedTable& table, const fs::
   const Setting& setting = table.setting;
   section.add<Paragraph>(
       reading,
-      {{what_was_played(setting) + " Ranks and episodes: ",
+      {{what_was_played(setting) + " Ranks, arms and episodes: ",
         Span::link(Titles(setting.suite).suite(), (board / (setting.suite + ".html")).generic_string()), "."}});
   if (table.standings.empty()) return;
   if (table.steps) {
     add_captioned(section, steps_grid(*table.steps, setting.suite, setting.name() + "_steps"));
     if (!table.curve.empty()) add_captioned(section, curve_grid(table.curve, setting.suite, setting.name() + "_curve"));
-    section.add<Paragraph>(reading, {{statistics::words_of_steps}});
     if (table.undisputed) section.add<Paragraph>(reading, {{words_of(*table.undisputed)}});
   }
   const std::vector<std::string> arms = arms_of(setting);
   auto [arm, n] = main_column(setting);
   if (!contains(arms, arm))  // a preset of before the suite had it
     arm = table.track.arms.empty() ? arms.back() : table.track.arms.front();
-  add_captioned(section, along_demonstrations(table, arm));
-  if (arms.size() > 1) add_captioned(section, by_arm(table, arms, n));
+  add_captioned(section, success_grid(table, arms, arm, n));
 }
 
 Grid all_steps_grid(const Suites& suites) {
