@@ -19,6 +19,8 @@ WIDER = """return [...document.querySelectorAll(".frame")].filter((f) => f.scrol
 INNER = """return [...document.querySelectorAll("main .frame")].filter((f) => f.scrollHeight > f.clientHeight + 1).map((f) => f.getAttribute("aria-label"))"""
 HEADLESS = """return [...document.querySelectorAll("main .frame")].filter((f) => f.querySelector("thead") &&
     getComputedStyle(f.querySelector("thead")).display === "none").map((f) => f.getAttribute("aria-label"))"""
+ONE_SUITE = """return [...document.querySelectorAll("#overview-any-policy :is(thead, tbody) tr:not([hidden])")]
+    .map((row) => [...row.cells].filter((cell) => cell.checkVisibility()).map((cell) => cell.textContent))"""
 COLUMN = """return [...document.querySelectorAll("#table1 > .frame tbody tr:not([hidden])")].map((row) => row.cells[arguments[0]].textContent.trim())"""
 
 
@@ -54,7 +56,7 @@ class BoardInABrowser(Case):
     def test_rows_are_sorted_and_filtered(self):
         self.open()
         names = self.script(COLUMN, 1)
-        self.assertEqual((len(names), *names[:2], names[-1]), (200, "oracle", "method of author 196", "best constant action"))
+        self.assertEqual((len(names), *names[:2], names[-1]), (200, "Oracle", "method of author 196", "Best constant action"))
         success = [float(text[:5]) for text in self.script(COLUMN, 2)]
         self.click("#table1 thead th:nth-child(3) button")
         self.assertEqual([float(text[:5]) for text in self.script(COLUMN, 2)], sorted(success, reverse=True))
@@ -125,10 +127,21 @@ class BoardInABrowser(Case):
         self.assertGreater(len(everything), len(first))
         self.assertEqual(heads[:3], ["method", "policy", "answers"])
         self.assertGreater(len(heads), 10)
-        self.script("const one = document.querySelector('.filter select'); one.value = 'heat map'; one.onchange()")
+        self.script("const one = document.querySelector('.filter select[aria-label=policy]'); one.value = 'heat map'; one.onchange()")
         chosen = self.script(rows)
         self.assertEqual({row[1] for row in chosen}, {"heat map"})
         self.assertLess(len(chosen), len(everything))
+        self.script("const one = document.querySelector('.filter select[aria-label=policy]'); one.value = ''; one.onchange()")
+        for suite in "Clutter and near misses", "":
+            self.script("const one = document.querySelector('.filter select[aria-label=suite]'); one.value = arguments[0]; one.onchange()", suite)
+            if suite:
+                seen = self.script(ONE_SUITE)
+                self.assertEqual({len(row) for row in seen}, {4}, "the other suites' columns are hidden")
+                self.assertEqual(seen[0][3], suite)
+                success = [float(row[3]) for row in seen[1:]]
+                self.assertEqual(success, sorted(success, reverse=True))
+                self.assertGreater(len(success), len(first), "rows of few suites too, all of which are in this one")
+        self.assertEqual(self.script(rows), everything, "as they were")
         self.click("#overview-any-policy tbody tr:not([hidden]) td a")
         self.browser.until(lambda: self.script("return document.getElementById('panel')?.open"), "a number leads to its episodes")
 

@@ -1,11 +1,12 @@
 """report.html as a browser shows it: nothing that axe-core finds serious, nothing wider than the screen or the paper, few stops
 of the tab key, and a dialog that leads from a number to an episode. Needs Chromium, its driver and Selenium."""
+import pathlib
 import shutil
 import unittest
 
 import axe
-from case import BesideOneRun
-from study_browser_test import MISSING, Service, webdriver
+from case import BUILD, BesideOneRun
+from study_browser_test import CONTRAST, MISSING, By, Keys, Service, webdriver
 from visible_ids import visible_ids
 
 A4 = 680  # pixels of CSS between its margins
@@ -217,6 +218,19 @@ class ClutterInABrowser(InABrowser):
                 .map((e) => e.getBoundingClientRect().height)""")
             self.assertGreater(min(size), 8, "text that can be read")
 
+    def test_the_first_chart_is_on_the_first_screen(self):
+        """Below no list of links, and above the arms, which are its places."""
+        for width in (1280, 390):
+            self.open(width, folded=True)
+            top, links, arms = self.script("""const chart = [...document.querySelectorAll("#success svg.chart")].find((e) => e.getClientRects().length);
+                const above = (e) => e.compareDocumentPosition(chart) & Node.DOCUMENT_POSITION_FOLLOWING;
+                return [chart.getBoundingClientRect().top,
+                    [...document.querySelectorAll("body a:not(.skip)")].filter((e) => e.checkVisibility() && above(e)).map((e) => e.textContent),
+                    [...document.querySelectorAll(".arms li")].map((e) => !above(e))]""")
+            self.assertLess(top, 800, width)
+            self.assertEqual(links, [])
+            self.assertEqual(arms, [True] * 8)
+
     def test_a_point_tells_its_value(self):
         self.open()
         told = self.script("""const point = document.querySelector("#success .wide .point");
@@ -258,6 +272,76 @@ class ClutterInABrowser(InABrowser):
         self.assertEqual(card["og:title"], self.script("return document.querySelector('h1').textContent"))
         self.assertEqual(card["og:description"], self.script("return document.querySelector('.headline').textContent"))
         self.assertTrue(self.script("return document.querySelector('link[rel=icon]').href").startswith("data:image/svg+xml,"))
+
+
+@unittest.skipIf(MISSING, f"not installed: {', '.join(MISSING)}")
+class StepsInABrowser(InABrowser):
+    """Of episodes of several steps, in an environment whose actions are no places of the picture."""
+    source = pathlib.Path(__file__).resolve().parents[2] / "examples/reach2d"
+    run_of_class = ("run", source / "reach2d_suite.json", "--answers", "none", "--engines", "own", "--methods", "human", "--demos", "1",
+                    "--seeds", "0", "--episodes", "4", "--set", "human.epochs=1")
+
+    def setUp(self):
+        super().setUp()
+        self.environment.update(LGABENCH_PLUGIN_PATH=str(BUILD / "tests/plugins/examples"), LGABENCH_SCENARIO_PATH=str(self.source))
+
+    def open_episode(self, *looks):
+        """The slider of a row's first episode, and the pictures that it goes through."""
+        self.open(*looks)
+        self.click("button.rate")
+        self.click("dialog .zoom")
+        pictures = self.script("""const one = episodesOf(now.row).find((e) => episodeId(e) === now.episode);
+            return [one.picture, ...one.end.map((end) => end || one.picture)]""")
+        return self.browser.find_element(By.CSS_SELECTOR, ".stepwise input"), pictures
+
+    def assert_step(self, number, pictures):
+        caption, said, *shown = self.script("""const figure = document.querySelector(".stepwise");
+            return [figure.querySelector("figcaption").textContent, figure.querySelector("input").getAttribute("aria-valuetext"),
+                ...[...figure.querySelectorAll("svg")].filter((e) => e.checkVisibility()).map((e) => e.querySelector("image").getAttribute("href"))]""")
+        self.assertEqual(shown, ["data:image/png;base64," + pictures[number]])
+        last = len(pictures) - 1
+        self.assertTrue(caption.startswith(f"after step {number} of {last}" if number else f"before step 1 of {last}"), caption)
+        self.assertEqual(said, caption)
+
+    def test_a_slider_goes_through_the_steps(self):
+        slider, pictures = self.open_episode()
+        self.assertGreater(len(pictures), 4)
+        self.assertGreater(len(set(pictures)), 2, "something moves")
+        self.assert_step(len(pictures) - 1, pictures)
+        address = self.browser.current_url
+        for keys, step in ((Keys.HOME, 0), (Keys.ARROW_RIGHT, 1), (Keys.ARROW_RIGHT, 2), (Keys.ARROW_LEFT, 1), (Keys.END, len(pictures) - 1)):
+            slider.send_keys(keys)
+            self.assert_step(step, pictures)
+        self.assertEqual(self.browser.current_url, address, "its arrows lead to no other episode")
+        webdriver.ActionChains(self.browser).move_to_element_with_offset(slider, 2 - slider.size["width"] // 2, 0).click().perform()
+        self.assert_step(0, pictures)
+
+    def test_what_is_enlarged_stays_so_while_it_slides(self):
+        slider, _ = self.open_episode()
+        width = "return document.querySelector('.stepwise').getBoundingClientRect().width"
+        small = self.script(width)
+        enlarge = "[...document.querySelectorAll('.stepwise .zoom')].find((e) => e.checkVisibility()).click()"
+        self.script(enlarge)
+        slider.send_keys(Keys.HOME)
+        self.assertGreater(self.script(width), 1.8 * small)
+        self.script(enlarge)
+        self.assertEqual(self.script(width), small)
+
+    def test_it_stands_beside_the_beginning_at_every_width(self):
+        for width in (1280, 390):
+            for scheme in ("light", "dark"):
+                with self.subTest(width, scheme=scheme):
+                    slider, _ = self.open_episode(width, scheme)
+                    self.assertEqual(self.script("return document.querySelector('.large').children[1].className"), "stepwise")
+                    self.assertLess(slider.rect["y"] + slider.rect["height"], 900, "on the first screen")
+                    self.assertEqual(self.script("const panel = document.getElementById('panel'); return panel.scrollWidth - panel.clientWidth"), 0)
+                    self.assertEqual(self.shown(".large figcaption")[0], "before: the target outlined", "no action is drawn")
+                    self.assertGreaterEqual(self.script(CONTRAST)[0], 4.5, self.script(CONTRAST)[1])
+
+    @axe.needed
+    def test_axe_finds_nothing(self):
+        self.open_episode()
+        self.assertEqual(axe.findings(self.browser), [])
 
 
 @unittest.skipIf(MISSING, f"not installed: {', '.join(MISSING)}")

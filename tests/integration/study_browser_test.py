@@ -25,7 +25,7 @@ except ImportError:  # Debian's packages are those of Debian's interpreter
     if sys.executable != debian and os.access(debian, os.X_OK) and not os.environ.get("LGABENCH_SECOND_PYTHON"):
         os.environ["LGABENCH_SECOND_PYTHON"] = "1"
         os.execv(debian, [debian, *sys.argv])
-    webdriver = Service = None
+    webdriver = Service = By = Keys = None
 
 import axe
 from study_people import SMALL, Server, StudyCase, events
@@ -48,7 +48,7 @@ for (const element of document.querySelectorAll('body *')) {
   if (!own || !element.getClientRects().length || element.disabled || element.tagName === 'NOSCRIPT') continue;
   let behind = element;
   while (behind && (numbers(getComputedStyle(behind).backgroundColor)[3] ?? 1) === 0) behind = behind.parentElement;
-  const a = light(numbers(style.color));
+  const a = light(numbers(element.ownerSVGElement ? style.fill : style.color));
   const b = light(behind ? numbers(getComputedStyle(behind).backgroundColor) : [255, 255, 255]);
   const contrast = (Math.max(a, b) + .05) / (Math.min(a, b) + .05);
   if (contrast < worst[0]) worst = [contrast, element.tagName + ' ' + element.textContent.slice(0, 40)];

@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <set>
+#include <utility>
 
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/filled.hpp>
@@ -285,18 +286,27 @@ std::string html(const Document& document, const Json& data, const std::string& 
   if (!document.question.empty()) body += "<p class=question>" + escaped(document.question) + "</p>\n";
   if (!document.headline.empty()) body += "<p class=headline>" + spans_html(document.headline) + "</p>\n";
   if (!document.setting.empty()) body += "<p class=hint>" + spans_html(document.setting) + "</p>\n";
-  body += arms_html(document) + notes_html(document);
+  const auto first = std::find_if(document.sections.begin(), document.sections.end(),
+                                  [](const Section& section) { return (section.in & on_page) != 0; });
+  // The arms stand below the first section's charts, whose places they explain.
+  const auto has_charts = [](const Block& block) {
+    return (block.in & on_page) != 0 && block.folded.empty() && std::holds_alternative<Charts>(block.content);
+  };
+  std::string arms = arms_html(document);
+  if (first == document.sections.end() || std::none_of(first->blocks.begin(), first->blocks.end(), has_charts))
+    body += std::exchange(arms, "");
+  body += notes_html(document);
   for (const Section& section : document.sections) {
     if ((section.in & on_page) == 0) continue;
     std::string blocks;
-    for (const Block& block : section.blocks)
+    for (const Block& block : section.blocks) {
       if ((block.in & on_page) != 0) blocks += block_html(block);
+      if (has_charts(block)) blocks += std::exchange(arms, "");
+    }
     body +=
         fmt::format("<section id=\"{0}\" aria-labelledby=\"{0}-title\"><h2 id=\"{0}-title\">{1}</h2>\n{2}</section>\n",
                     section.id, shown(section.title), blocks);
   }
-  const auto first = std::find_if(document.sections.begin(), document.sections.end(),
-                                  [](const Section& section) { return (section.in & on_page) != 0; });
   const fs::path installed = data_directory() / "page", style = installed / fs::path(script).replace_extension(".css");
   std::string summary = document.description;  // for those to whom the page is sent
   if (summary.empty())

@@ -218,9 +218,7 @@ Chart curve_chart(const NamedTable& table) {
   Chart chart;
   const std::vector<int>& demonstrations = table.setting.demonstrations;
   chart.title = "Success against the number of demonstrations";
-  chart.subtitle =
-      fmt::format("mean over {} scenarios; each method's best row, trained and untrained, and reference rows",
-                  table.setting.scenarios.size());
+  chart.subtitle = fmt::format("mean over {} scenarios; each method's best rows", table.setting.scenarios.size());
   chart.axis = "demonstrations";
   chart.alternative = chart.title + ", as in the table's columns";
   const double pad = .08 * (demonstrations.back() - demonstrations.front());

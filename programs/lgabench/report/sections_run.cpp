@@ -33,7 +33,7 @@ Section what_was_run(const Material& material) {
     for (const auto& item : cell.episodes) episodes += item.second.size();
   const std::pair<std::string, std::string> cells{
       "cells", fmt::format("{} finished, {} failed, {} not run", run.cells.size() - failed, failed, run.not_run)};
-  section.add_detail(Facts{{cells, {"episodes", std::to_string(episodes)}}});
+  section.add_detail(Facts{{cells, {"episodes", std::to_string(episodes)}}, true});
   Facts known = facts(run);
   known.items.insert(known.items.begin(), cells);
   section.add(in_markdown, std::move(known));

@@ -80,11 +80,11 @@ function steps(e) {
   const pictures = [e.picture, ...e.end.map((end) => end || e.picture)], last = e.end.length;
   const names = pictures.map((bytes, i) => i === 0 ? `before step 1 of ${last}` :
     `after step ${i} of ${last}${bytes === pictures[i - 1] ? ": nothing moved" : ""}`);
-  const shown = pictures.map((bytes, i) => `<div data-name="${names[i]}"${i === last ? "" : " hidden"}>` +
-    `<button type="button" class="zoom" aria-pressed="false">${picture(bytes, `${names[i]}: ${where(e)}`,
-      i === last ? "" : arrow([e.action, ...e.then][i], "#fff"))}</button></div>`);
-  return `<figure class="stepwise">${shown.join("")}<input type="range" min="0" max="${last}" value="${last}" ` +
-    `aria-label="Step" aria-valuetext="${names[last]}"><figcaption>${names[last]}</figcaption></figure>`;
+  const shown = pictures.map((bytes, i) => `<span data-name="${names[i]}"${i === last ? "" : " hidden"}>` +
+    `${picture(bytes, `${names[i]}: ${where(e)}`, i === last ? "" : arrow([e.action, ...e.then][i], "#fff"))}</span>`);
+  return `<figure class="stepwise"><button type="button" class="zoom" aria-pressed="false">${shown.join("")}</button>` +
+    `<input type="range" min="0" max="${last}" value="${last}" aria-label="Step" aria-valuetext="${names[last]}">` +
+    `<figcaption>${names[last]}</figcaption></figure>`;
 }
 function showStep(slider) {
   const figure = slider.closest(".stepwise"), all = [...figure.querySelectorAll("[data-name]")], now = all[slider.valueAsNumber];
@@ -110,21 +110,21 @@ function read(e) {
 
 // One episode, as large as the dialog.
 function single(e) {
-  const shown = [["before: the action is white, the oracle’s green, the target outlined", before(e)],
-    [e.end === "" ? "after the action: nothing moved" : "after the action", after(e)],
-    ["goal mask: what φ̂ keeps of the scene", kept(e)], ...saw(e)].filter(([, drawn]) => drawn);
+  const signs = [[e.action?.length, "the action is white"], [e.oracle?.length, "the oracle’s green"], [e.targets, "the target outlined"]]
+    .filter(([drawn]) => drawn).map(([, words]) => words).join(", ");
+  const figures = (all) => all.filter(([, drawn]) => drawn).map(([name, drawn]) =>
+    `<figure><button type="button" class="zoom" aria-pressed="false">${drawn}</button><figcaption>${name}</figcaption></figure>`).join("");
+  const first = [[signs ? `before: ${signs}` : "before", before(e)], [e.end === "" ? "after the action: nothing moved" : "after the action", after(e)]];
   return `<p>${told(e)}. ${escaped(e.command)}${leaves(e)} <small>${escaped(where(e))}</small></p>${chips(e)}<div class="large">` +
-    shown.map(([name, drawn]) =>
-      `<figure><button type="button" class="zoom" aria-pressed="false">${drawn}</button><figcaption>${name}</figcaption></figure>`)
-      .join("") +
-    `${steps(e)}</div>${read(e)}<p>Again, as an animation: <code>lgabench replay RUN ${escaped(episodeId(e))} --out episode.gif</code></p>`;
+    figures(first) + steps(e) + figures([["goal mask: what φ̂ keeps of the scene", kept(e)], ...saw(e)]) +
+    `</div>${read(e)}<p>Again, as an animation: <code>lgabench replay RUN ${escaped(episodeId(e))} --out episode.gif</code></p>`;
 }
 
 function listOf(shown) {
   const seen = shown.filter((e) => e.picture), list = document.createElement("div");
   list.innerHTML = `<p>${shown.length} episodes, ${shown.filter((e) => e.failure).length} failed; ${seen.length} with a ` +
-    "picture on this page. White: the action, from where it takes hold to where it lets go; green: the oracle’s; " +
-    "outlined: the target. A click enlarges.</p>";
+    "picture on this page. " + (seen.some((e) => e.action) ? "White: the action, from where it takes hold to where it lets go; " +
+    "green: the oracle’s; outlined: the target. " : "Outlined: the target. ") + "A click enlarges.</p>";
   if (seen.length) list.append(growing(seen, 12, (some) => `<div class="scenes">${some.map(card).join("")}</div>`));
   const line = (e) => `<tr>${[words(e.cell.scenario), data.arms[e.arm], e.cell.seed + whose(e), e.index, e.command, e.failure || "success", e.attribution]
     .map((text) => `<td>${escaped(text)}</td>`).join("")}</tr>`;

@@ -58,7 +58,7 @@ function explainRanks(rows, rankOf) {
   }
 }
 
-// One filter for a page's tables: rows that have all of the words, and the chosen policy and answers. A word that some
+// One filter for a page's tables: rows that have all of the words, and the chosen policy, answers and suite. A word that some
 // row has as it stands is a whole one: "lga" does not find LGA-S. Without words, each method's best row, trained and
 // untrained, or all.
 const boards = [...document.querySelectorAll("[id^=table] table.sortable, [id^=overview] table")]
@@ -82,27 +82,47 @@ if (boards.length) {
     choice.hidden = values.length < 2 || !boards.every((table) => heads.get(table).includes(head));
     return [head, choice];
   });
+  // A suite of the first page is a column: it alone is shown, with the rows that are in it, by their success there.
+  const suites = document.createElement("select"), titles = boards.filter((table) => table.closest("[id^=overview]"))
+    .flatMap((table) => heads.get(table).slice(3, -1));
+  suites.ariaLabel = "suite";
+  suites.innerHTML = "<option value=''>suite: all</option>" + [...new Set(titles)].map((title) => `<option>${escaped(title)}</option>`).join("");
+  suites.hidden = !titles.length;
+  const bodies = boards.flatMap((table) => [...table.tBodies]).map((body) => [body, [...body.rows]]);
+  suites.onchange = () => {
+    for (const [body, order] of bodies) {
+      const table = body.parentElement, at = heads.get(table).indexOf(suites.value);
+      const success = (row) => parseFloat(row.cells[at].textContent) || 0;
+      body.append(...(at < 0 ? order : [...order].sort((a, b) => success(b) - success(a))));
+      for (const row of table.rows)
+        [...row.cells].forEach((cell, i) => { cell.hidden = at >= 0 && i > 2 && i !== at; });
+      table.querySelectorAll("[aria-sort]").forEach((head) => head.removeAttribute("aria-sort"));
+      if (at >= 0) table.tHead.rows[0].cells[at].setAttribute("aria-sort", "descending");
+    }
+    apply();
+    fit();
+  };
+  const more = [...document.querySelectorAll(":is([id^=table]:not([id*='-']), [id^=overview]) > .frame tr.more")].length;
   const apply = () => {
     const said = wanted.value.toLowerCase().split(/[\s_]+/).filter((word) => word);
     const known = rows.map((row) => [row, wordsOf(row)]);
     const whole = said.filter((word) => known.some(([, words]) => words.includes(word)));
-    const chosen = choices.filter(([, choice]) => choice.value);
+    const chosen = choices.filter(([, choice]) => choice.value), found = said.length || chosen.length || suites.value;
+    label.hidden = !more || found;  // what is found is shown whole
     for (const [row, words] of known)
-      row.hidden = said.length || chosen.length
+      row.hidden = found
         ? !said.every((word) => words.some((one) => whole.includes(word) ? one === word : one.includes(word))) ||
-          chosen.some(([head, choice]) => valueOf(row, head) !== choice.value)
+          chosen.some(([head, choice]) => valueOf(row, head) !== choice.value) || valueOf(row, suites.value) === "–"
         : row.classList.contains("more") && !all.checked;
     for (const table of boards) explainRanks(rows.filter((row) => row.closest("table") === table), (row) => valueOf(row, "rank"));
   };
-  const more = [...document.querySelectorAll(":is([id^=table]:not([id*='-']), [id^=overview]) > .frame tr.more")].length;
   const first = document.querySelector("[id^=overview]") ? "those of half of the suites" : "each method’s best, trained and untrained";
   label.append(all, more ? ` all rows (${more} more), not only ${first}` : "");
-  label.hidden = !more;
   wanted.oninput = all.onchange = apply;
   choices.forEach(([, choice]) => { choice.onchange = apply; });
   const box = document.createElement("p");
   box.className = "filter";
-  box.append(wanted, ...choices.map(([, choice]) => choice), label);
+  box.append(wanted, suites, ...choices.map(([, choice]) => choice), label);
   data.tabs.length > 1 ? tabs.after(box) : boards[0].closest(".frame").before(box);
   apply();
 }

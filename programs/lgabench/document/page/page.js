@@ -22,7 +22,7 @@ $("theme").onclick = () => {
 };
 
 $("contents").hidden = false;
-$("contents").innerHTML = [...document.querySelectorAll("main section")]
+$("contents").querySelector("nav").innerHTML = [...document.querySelectorAll("main section")]
   .map((section) => `<a href="#${section.id}">${section.querySelector("h2").textContent}</a>`).join("");
 
 // Numbers sort as numbers ("< 0.001" among them), what has none goes last; each group by itself.
@@ -87,7 +87,7 @@ let width = 0;
 new ResizeObserver(() => {
   if (document.body.clientWidth !== width) width = document.body.clientWidth, fit();
 }).observe(document.body);
-for (const folded of document.querySelectorAll("details")) folded.addEventListener("toggle", () => fit());
+for (const folded of document.querySelectorAll("main details")) folded.addEventListener("toggle", () => fit());
 
 // On paper all is open, and as wide as a page of A4.
 let closed = [];
