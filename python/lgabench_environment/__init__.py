@@ -11,7 +11,7 @@ import numpy
 import numpy.typing
 from lgabench_method.stream import RandomStream
 
-__all__ = ["Environment", "Observation", "RandomStream", "Request", "Result", "Scene", "Thing"]
+__all__ = ["Environment", "Observation", "RandomStream", "Request", "Result", "Scene", "Thing", "arm_of", "near_misses"]
 Numbers = numpy.typing.NDArray[numpy.float64]
 Bytes = numpy.typing.NDArray[numpy.uint8]
 
@@ -86,6 +86,25 @@ class Result:
     taken: int = 0
 
 
+def arm_of(scenario: dict[str, Any], request: Request) -> dict[str, Any]:
+    """What the scenario's file says of the scenes that are asked for: its "train", or its test of that arm."""
+    if request.arm == "train":
+        return scenario.get("train", {})
+    return next((test for test in scenario["tests"] if test["arm"] == request.arm), {})
+
+
+def near_misses(target: tuple[str, str], others: Sequence[tuple[str, str]], near: Any = True) -> list[tuple[str, str]]:
+    """The others, each (object type, texture), near misses first. Near are those that share the target's type or its texture, and
+    those that `near` lists under "object_types" or "textures", as near_miss of a scenario does."""
+    listed = near if isinstance(near, dict) else {}
+
+    def is_near(one: tuple[str, str]) -> bool:
+        return (one[0] == target[0] or one[1] == target[1] or one[0] in listed.get("object_types", ())
+                or one[1] in listed.get("textures", ()))
+
+    return sorted(others, key=lambda one: not is_near(one))
+
+
 class Environment:
     """Derive from it. Attributes are literals; a task is {"id", "layouts", "example"} with "most_steps" (1), "failures" and
     "has_state" (True) where it needs them, a number of action or state (name, unit, low, high)."""
@@ -95,7 +114,7 @@ class Environment:
     space: Any  # the feature space that names its things
     things: Any  # (object type, texture) of all that its scenes can show
     actions: Any  # numbers of an action
-    places: Any = []                 # [index of the number that grows down, of the one that grows across] in the picture
+    places: Any = []                 # lists [index of the number that grows down in the picture, of the one that grows across]
     rotations: Any = []              # lists of indices of numbers that are a unit vector together
     state: Any = []
     picture: Any  # rows and columns
@@ -110,12 +129,17 @@ class Environment:
     def sample(self, scenario: dict[str, Any], request: Request,
                random: RandomStream) -> Union[list[Thing], tuple[list[Thing], Any]]:
         """The things of a scene, and anything else that JSON has. Pure. `scenario` is the file, whole. This one draws a target from
-        request.meant, fills up to most_instances from request.others, and calls place()."""
+        request.meant and others from request.others, and calls place(). The others are as many as "distractors" of the scenario's
+        arm says, [fewest, most], else up to most_instances; near misses come first where its "near_miss" says so. Both have their
+        effect if scene_members names them."""
         target = request.meant[random.below(len(request.meant))]
-        things = [Thing(*target, role="target")]
-        for i in random.permutation(len(request.others)):
-            if len(things) < self.most_instances and request.others[i] != target:
-                things.append(Thing(*request.others[i]))
+        arm = arm_of(scenario, request)
+        fewest, most = arm.get("distractors", (self.most_instances - 1,) * 2)
+        count = fewest + random.below(most - fewest + 1) if fewest < most else fewest
+        others = [request.others[i] for i in random.permutation(len(request.others)) if request.others[i] != target]
+        if arm.get("near_miss"):
+            others = near_misses(target, others, arm["near_miss"])
+        things = [Thing(*target, role="target"), *(Thing(*other) for other in others[:count])]
         things = [things[i] for i in random.permutation(len(things))]
         for number, thing in enumerate(things):
             thing.instance_id = number + 1

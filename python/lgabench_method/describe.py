@@ -57,8 +57,23 @@ def _versions(modules):
     return versions
 
 
+def _renderer():
+    """The library that draws where MUJOCO_GL or PYOPENGL_PLATFORM chooses one, with its hash; a graphics card's too, by its name.
+    Of the system's folders alone: this may run where no program can be started."""
+    chosen = os.environ.get("MUJOCO_GL") or os.environ.get("PYOPENGL_PLATFORM")
+    name = {"osmesa": "OSMesa", "egl": "EGL", "glfw": "GL", "glx": "GL"}.get((chosen or "").lower())
+    folders = ["/usr/local/lib", f"/usr/lib/{sysconfig.get_config_var('MULTIARCH')}", "/usr/lib64", "/usr/lib"]
+    for folder in map(pathlib.Path, folders if name else ()):
+        if found := sorted(folder.glob(f"lib{name}.so*")):
+            library = found[-1].resolve()
+            cards = sorted(one.name for one in folder.glob(f"lib{'EGL' if name == 'EGL' else 'GLX'}_nvidia.so.*")) if name != "OSMesa" else []
+            return {"renderer": " ".join([library.name, hashlib.sha256(library.read_bytes()).hexdigest()[:16], *cards[-1:]])}
+    return {}
+
+
 def packages(names):
-    """Versions of these distributions and of all that they need, as far as they are installed, and what chooses a renderer."""
+    """Versions of these distributions and of all that they need, as far as they are installed, what chooses a renderer, and the
+    renderer."""
     versions, waiting = {"python": ".".join(map(str, sys.version_info[:3]))}, list(names)
     while waiting:
         name = re.sub("[-_.]+", "-", waiting.pop()).lower()
@@ -71,7 +86,7 @@ def packages(names):
         needs = importlib.metadata.requires(name) or []
         waiting += [re.match("[A-Za-z0-9._-]+", need)[0] for need in needs if "extra ==" not in need]
     versions.update({name: os.environ[name] for name in ("MUJOCO_GL", "PYOPENGL_PLATFORM") if name in os.environ})
-    return versions
+    return {**versions, **_renderer()}
 
 
 def _pairs_of(found, name, members):

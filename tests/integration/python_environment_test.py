@@ -4,7 +4,9 @@ LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 p
 """
 import contextlib
 import json
+import os
 import re
+import subprocess
 import unittest
 
 import case
@@ -80,6 +82,51 @@ class PythonEnvironments(PythonCase):
         self.assertIn("0 cells computed", self.run_suite("--resume").stderr)
         self.change("GAIN = 20, .3", "GAIN = 20, .35")
         self.assertIn(" 0 reused", self.run_suite("--resume").stderr)
+
+    def test_a_space_of_ones_own(self):
+        space = {"object_types": ["round"], "textures": ["red", "green", "blue", "yellow", "purple", "orange"]}
+        file = self.dir / "mine/discs.json"
+        file.write_text(json.dumps(space))
+        self.change("space = \"tabletop\"", "space = \"discs\"")
+        for scenario in self.dir.glob("mine/my_world_*d.json"):
+            scenario.write_text(scenario.read_text().replace("\"tabletop\"", "\"discs\""))
+        self.run_suite()
+        self.assertEqual({status["state"] for _, status in self.cells("run").values()}, {"ok"})
+        file.write_text(json.dumps({**space, "object_types": ["round", "square"]}))
+        self.assertIn("same settings, other data or versions", self.run_suite("--resume", expect=2).stderr)
+        file.write_text(json.dumps({**space, "object_types": ["round", "round"]}))
+        self.assertIn("discs.json: /object_types: expected names, each once", self.run_suite("--fresh", expect=2).stderr)
+        file.unlink()
+        self.call("report", "run")
+        self.assertIn("feature space \"discs\"", self.run_suite("--fresh", expect=2).stderr)
+
+    def test_sample_reads_distractors_and_near_misses(self):
+        code = """if True:
+            from lgabench_environment import Environment, RandomStream, Request
+            class Box(Environment):
+                most_instances = 9
+                def place(self, things, random): pass
+            others = [(str(i), "far") for i in range(6)] + [("5", "near"), ("apple", "red"), ("6", "red")]
+            request = Request("t", "l", "test", "many", 0, 0, 0, [("apple", "green")], others)
+            def names(members, **changed):
+                scenario = {"train": {}, "tests": [{"arm": "many", **members}]}
+                things = Box().sample(scenario, Request(**{**vars(request), **changed}), RandomStream("a"))[0]
+                return sorted((one.object_type, one.texture) for one in things if one.role == "distractor")
+            assert len(names({})) == 8 and len(names({"distractors": [2, 2]})) == 2
+            assert names({"distractors": [1, 1], "near_miss": True}) == [("apple", "red")]
+            named = {"object_types": ["6"], "textures": ["near"]}
+            assert names({"distractors": [3, 3], "near_miss": named}) == [("5", "near"), ("6", "red"), ("apple", "red")]
+            assert len(names({"distractors": [2, 2]}, arm="train")) == 8"""
+        done = subprocess.run([PYTHON, "-c", code], env={**os.environ, "PYTHONPATH": str(case.BUILD / "python")}, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_the_renderer_is_named(self):
+        code = "import lgabench_method.describe as d; print(d.packages(['numpy']).get('renderer', ''))"
+        for chosen, library in (("osmesa", "libOSMesa"), ("disabled", "")):
+            environment = {**os.environ, "PYTHONPATH": str(case.BUILD / "python"), "MUJOCO_GL": chosen, "PYOPENGL_PLATFORM": ""}
+            said = subprocess.run([PYTHON, "-c", code], env=environment, capture_output=True, text=True, check=True).stdout
+            installed = library and library in subprocess.run(["/sbin/ldconfig", "-p"], capture_output=True, text=True).stdout
+            self.assertRegex(said, rf"^{library}\.so\S* [0-9a-f]{{16}}$" if installed else "^$")
 
     def test_axes_without_an_engine_or_views(self):
         scenario = json.loads((self.dir / "mine/my_world_red.json").read_text())

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/read_space.hpp>
+#include <lgabench/core/scenario_path.hpp>
 #include <lgabench/core/shipped.hpp>
 #include <lgabench/core/suggest.hpp>
 
@@ -28,17 +31,39 @@ std::vector<std::string> read_names(const JsonReader& reader, const std::vector<
   return ordered;
 }
 
+std::vector<std::string> read_all_names(const JsonReader& list) {
+  std::vector<std::string> names = list.strings(), once = names;
+  std::sort(once.begin(), once.end());
+  if (names.empty() || std::adjacent_find(once.begin(), once.end()) != once.end()) list.fail("names, each once");
+  return names;
+}
+
+constexpr const char* tells_a_space = "object_types";
+
 }  // namespace
+
+std::vector<std::string> feature_space_ids() {
+  std::vector<std::string> ids = shipped_names("spaces");
+  for (const auto& own : files_on_scenario_path(tells_a_space))
+    if (!contains(ids, own.first)) ids.push_back(own.first);
+  return ids;
+}
+
+fs::path feature_space_file(const std::string& id) {
+  if (contains(shipped_names("spaces"), id)) return data_directory() / "spaces" / (id + ".json");
+  const auto own = files_on_scenario_path(tells_a_space);
+  const auto found = own.find(id);
+  if (found == own.end()) throw InputError(none_named("feature space", id, feature_space_ids()));
+  return found->second;
+}
 
 FeatureSpace load_feature_space(const std::string& id) {
   static MadeOnce<FeatureSpace> all;
-  const fs::path file = data_directory() / "spaces" / (id + ".json");
+  const fs::path file = feature_space_file(id);
   return all.of(file.string(), [&] {
-    if (const auto& known = shipped_names("spaces"); !contains(known, id))
-      throw InputError(none_named("feature space", id, known));
     const Json document = read_json(file);
     const JsonReader reader(document, file.string());
-    return FeatureSpace{id, reader.at("object_types").strings(), reader.at("textures").strings()};
+    return FeatureSpace{id, read_all_names(reader.at("object_types")), read_all_names(reader.at("textures"))};
   });
 }
 

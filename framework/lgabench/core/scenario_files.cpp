@@ -8,6 +8,7 @@
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/json.hpp>
+#include <lgabench/core/scenario_path.hpp>
 #include <lgabench/core/shipped.hpp>
 
 namespace lgabench {
@@ -25,15 +26,6 @@ bool may_be_scenario(const fs::path& file) {
   }
 }
 
-std::vector<fs::path> scenario_path() {
-  std::vector<fs::path> directories;
-  const char* listed = std::getenv(variable);
-  std::istringstream words(listed ? listed : "");
-  for (std::string word; std::getline(words, word, ':');)
-    if (!word.empty()) directories.emplace_back(word);
-  return directories;
-}
-
 fs::path shipped() { return data_directory() / "scenarios"; }
 
 fs::path file_in(const fs::path& directory, const std::string& id) { return directory / (id + ".json"); }
@@ -49,6 +41,28 @@ void add_own(std::map<std::string, fs::path>& files, const std::string& id, cons
 }
 
 }  // namespace
+
+std::vector<fs::path> scenario_path() {
+  std::vector<fs::path> directories;
+  const char* listed = std::getenv(variable);
+  std::istringstream words(listed ? listed : "");
+  for (std::string word; std::getline(words, word, ':');)
+    if (!word.empty()) directories.emplace_back(word);
+  return directories;
+}
+
+std::map<std::string, fs::path> files_on_scenario_path(const std::string& member) {
+  std::map<std::string, fs::path> files;
+  std::error_code none_to_list;
+  for (const fs::path& directory : scenario_path())
+    for (const std::string& id : json_names(directory, none_to_list)) try {
+        const fs::path file = file_in(directory, id);
+        const Json json = read_json(file);
+        if (json.is_object() && json.contains(member)) files.emplace(id, file);
+      } catch (const InputError&) {  // said where a scenario is named
+      }
+  return files;
+}
 
 void add_scenario_path(const fs::path& directory) {
   std::error_code error;

@@ -10,6 +10,7 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/read_space.hpp>
 #include <lgabench/core/shipped.hpp>
 #include <lgabench/record/fields.hpp>
 #include <lgabench/record/layout.hpp>
@@ -131,7 +132,7 @@ std::string key(const Cell& cell) { return sha256(canonical(to_json(cell))).subs
 
 Json data_hashes(const Scenario& scenario, const AnswerSource& answers, const Reading& reading) {
   const fs::path data = data_directory();
-  Json hashes{{"feature_space", shipped_sha256(data / "spaces" / (scenario.space.id + ".json"))},
+  Json hashes{{"feature_space", shipped_sha256(feature_space_file(scenario.space.id))},
               {"answers", folder_hash("answers")},
               {"embeddings", folder_hash("embeddings")}};
   const std::string& environment = scenario.environment->id();

@@ -4,15 +4,14 @@
 
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
-#include <lgabench/core/shipped.hpp>
+#include <lgabench/core/read_space.hpp>
 #include <lgabench/core/suggest.hpp>
 
 namespace lgabench::cli {
 
 // Lists the spaces only when a word is given.
 CLI::Validator feature_space() {
-  return CLI::Validator([](std::string& word) { return one_of("feature space", shipped_names("spaces"))(word); }, "",
-                        "");
+  return CLI::Validator([](std::string& word) { return one_of("feature space", feature_space_ids())(word); }, "", "");
 }
 
 std::string layout_of(const Scenario& scenario, const std::string& word) {
