@@ -5,12 +5,13 @@ LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 p
 import contextlib
 import json
 import os
+import pathlib
 import re
 import subprocess
 import unittest
 
 import case
-from python_test import HAS_NUMPY, PYTHON
+from python_test import HAS_NUMPY, PYTHON, has
 
 WORD = "mine/my_world.py:MyWorld"
 TEMPLATE = ("new-plugin", "my_world", "--kind", "environment", "--language", "python", "--directory", "mine")
@@ -224,6 +225,31 @@ class BrokenPythonEnvironments(PythonCase):
                 said = self.call("info", "my_world", *self.path, expect=4).stderr
                 self.assertRegex(said, says)
                 self.assertEqual(said.count("\n"), 1)
+
+
+class Robosuite(case.Case):
+    """The example; played where LGABENCH_TEST_ROBOSUITE names an interpreter with its packages."""
+    EXAMPLE = pathlib.Path(__file__).parents[2] / "examples/robosuite_table"
+    WITH = os.environ.get("LGABENCH_TEST_ROBOSUITE", "")
+
+    def path(self, interpreter):
+        return "--plugin-path", f"{self.EXAMPLE}/robosuite_table.py:RobosuiteTable", "--python", interpreter
+
+    def test_it_says_how_to_install_what_it_needs(self):
+        if not HAS_NUMPY or has(PYTHON, "robosuite"):
+            self.skipTest("an interpreter with NumPy and without robosuite is needed")
+        done = self.call("demos", "robosuite_drink", "--scenario-path", self.EXAMPLE, "--n", "1", "--engine", "own", "--out", "a.hdf5", *self.path(PYTHON), expect=3)
+        self.assertRegex(done.stderr, r"scene 0 of train: reset\(\): .*pip install robosuite==1.5.2 mujoco==3.3.2")
+        self.call("run", self.EXAMPLE / "robosuite_suite.json", "--preset", "main", "--answers", "none", "--methods", "human,gcbc_seg", "--engines", "own",
+                  "--dry-run", "--out", "run", *self.path(PYTHON))
+
+    @unittest.skipUnless(os.environ.get("LGABENCH_FULL") and WITH, "./test --full plays it, with LGABENCH_TEST_ROBOSUITE")
+    def test_a_cell_is_played_and_verified(self):
+        self.environment["MUJOCO_GL"] = "osmesa"
+        self.call("run", self.EXAMPLE / "robosuite_suite.json", "--preset", "smoke", "--answers", "none", "--methods", "human", "--episodes", "1",
+                  "--no-reference", "--out", "run", *self.path(self.WITH), timeout=1200)
+        self.assertEqual([status["state"] for _, status in self.cells("run").values()], ["ok"])
+        self.assertIn("1 bit-identical", self.call("verify", "run", *self.path(self.WITH), timeout=1200).stdout)
 
 
 if __name__ == "__main__":

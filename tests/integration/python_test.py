@@ -41,6 +41,20 @@ class Alone:
 '''
 RUN = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "3", "--no-reference",
        "--python", PYTHON]
+SERVER = '''
+import msgpack
+from websockets.sync.server import serve
+
+def handle(socket):
+    for message in socket:
+        asked = msgpack.unpackb(message)
+        assert len(asked["image"]) == asked["shape"][0] * asked["shape"][1] * 3 and asked["prompt"] == "Bring me the heart."
+        socket.send(msgpack.packb({"actions": [[number["high"] for number in asked["actions"]]]}))
+
+with serve(handle, "127.0.0.1", 0, max_size=None) as server:
+    print(server.socket.getsockname()[1], flush=True)
+    server.serve_forever()
+'''
 METHOD = '''
 import getpass
 import os
@@ -595,6 +609,19 @@ class PythonExamples(Case):
         self.assertNotIn("method_error", rows["bc_torch"]["failures"])
         success = [row["success"] for row in json.loads((self.dir / "out/summary.json").read_text())["rows"]]
         self.assertGreaterEqual(max(success), .7, "on masks")
+
+    def test_a_policy_server(self):
+        self.need("websockets")
+        self.need("msgpack")
+        server = subprocess.Popen([PYTHON, "-c", SERVER], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        self.addCleanup(server.communicate)
+        self.addCleanup(server.kill)
+        address = f"ws://127.0.0.1:{server.stdout.readline().strip()}"
+        (self.dir / "policy_server.py").write_text((EXAMPLES / "policy_server.py").read_text())
+        self.call("run", "q1", "--scenarios", "heart", "--methods", f"policy_server.py:Served+address={address}", "--answers", "none",
+                  "--demos", "1", "--seeds", "0", "--episodes", "2", "--no-reference", "--python", PYTHON, "--out", "out")
+        acted = [json.loads(line)["action"] for file in self.dir.glob("out/cells/*/episodes.jsonl") for line in file.read_text().splitlines()]
+        self.assertEqual(acted, 2 * [[.75, .5, 1, 1, 1, 1] * 2])
 
     def test_joblib_falls_back_on_one_process(self):
         self.need("joblib")
