@@ -79,7 +79,7 @@ class Pages(unittest.TestCase):
         rates = {method: [f"{100 * float(rate):.0f}" for rate in re.findall(r"(\d\.\d\d) \[", row)]
                  for method, row in re.findall(r"^\| ([\w -]+) \| heat map \|(.*)$", clutter, re.M)}
         unheard = steps[json.loads((SOURCE / "envs/tabletop/suites/many_commands.json").read_text())["about"]["title"]]
-        shown = {row.split("|")[1].strip(): re.findall(r"(\d+|–)(?: %)?(?: \*)? \|", row)
+        shown = {row.split("|")[1].strip(): re.findall(r"(\d+|–)(?: %)?(?: ¹)? \|", row)
                  for row in re.findall(r"^\| (?:the whole|a mask|the true mask).*$", (SOURCE / "README.md").read_text(), re.M)}
         self.assertEqual(list(shown.values()), [list(row) for row in zip(
             (rates["GCBC-SEG"][0], "–", rates["LGA"][0], rates["True mask"][0]), steps["Clutter and near misses"], unheard)])
