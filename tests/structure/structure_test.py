@@ -37,6 +37,15 @@ def needed(file):
     return re.findall(r"\(NEEDED\).*\[(.*)\]", out)
 
 
+class Links(unittest.TestCase):
+    @unittest.skipUnless((SOURCE / ".git").exists(), "an archive has no list of what is committed")
+    def test_no_committed_link_leads_out_of_the_tree(self):
+        kept = subprocess.run(["git", "-C", SOURCE, "-c", f"safe.directory={SOURCE}", "ls-files", "-s"], check=True,
+                              capture_output=True, text=True).stdout.splitlines()
+        links = [SOURCE / line.split("\t")[1] for line in kept if line.startswith("120000")]
+        self.assertEqual([str(link) for link in links if not link.resolve().is_relative_to(SOURCE)], [])
+
+
 class Budget(unittest.TestCase):
     def test_a_room_has_at_most_so_many_lines(self):
         self.assertEqual(sorted(BUDGET), sorted(LIBRARY + PROGRAMS))
