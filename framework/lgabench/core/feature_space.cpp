@@ -51,10 +51,13 @@ std::vector<std::string> feature_space_ids() {
 
 fs::path feature_space_file(const std::string& id) {
   if (contains(shipped_names("spaces"), id)) return data_directory() / "spaces" / (id + ".json");
-  const auto own = files_on_scenario_path(tells_a_space);
-  const auto found = own.find(id);
-  if (found == own.end()) throw InputError(none_named("feature space", id, feature_space_ids()));
-  return found->second;
+  static MadeOnce<fs::path> own;  // else each scenario and each cell would read all files of the path
+  return own.of(id, [&] {
+    const auto files = files_on_scenario_path(tells_a_space);
+    const auto found = files.find(id);
+    if (found == files.end()) throw InputError(none_named("feature space", id, feature_space_ids()));
+    return found->second;
+  });
 }
 
 FeatureSpace load_feature_space(const std::string& id) {

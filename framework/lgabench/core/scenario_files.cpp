@@ -16,15 +16,18 @@ namespace {
 
 constexpr const char* variable = "LGABENCH_SCENARIO_PATH";
 
-// A file that cannot be read counts: whoever names it is told why it cannot.
-bool may_be_scenario(const fs::path& file) {
+// Whether a file's JSON has the member; `unreadable` where it cannot be read.
+bool has_member(const fs::path& file, const std::string& member, bool unreadable) {
   try {
     const Json json = read_json(file);
-    return json.is_object() && json.contains("task");
+    return json.is_object() && json.contains(member);
   } catch (const InputError&) {
-    return true;
+    return unreadable;
   }
 }
+
+// A file that cannot be read counts: whoever names it is told why it cannot.
+bool may_be_scenario(const fs::path& file) { return has_member(file, "task", true); }
 
 fs::path shipped() { return data_directory() / "scenarios"; }
 
@@ -55,12 +58,8 @@ std::map<std::string, fs::path> files_on_scenario_path(const std::string& member
   std::map<std::string, fs::path> files;
   std::error_code none_to_list;
   for (const fs::path& directory : scenario_path())
-    for (const std::string& id : json_names(directory, none_to_list)) try {
-        const fs::path file = file_in(directory, id);
-        const Json json = read_json(file);
-        if (json.is_object() && json.contains(member)) files.emplace(id, file);
-      } catch (const InputError&) {  // said where a scenario is named
-      }
+    for (const std::string& id : json_names(directory, none_to_list))
+      if (const fs::path file = file_in(directory, id); has_member(file, member, false)) files.emplace(id, file);
   return files;
 }
 
