@@ -134,7 +134,26 @@ bool Meaning::empty() const {
   return std::all_of(sets.begin(), sets.end(), [](const FeatureSet& set) { return set.empty(); });
 }
 
-bool operator==(const Meaning& a, const Meaning& b) { return a.sets == b.sets && a.which == b.which; }
+bool operator==(const Meaning& a, const Meaning& b) {
+  return a.sets == b.sets && a.which == b.which && a.turns == b.turns;
+}
+
+std::string to_string(Part part) { return part == Part::object_type ? "object_type" : "texture"; }
+
+bool operator==(const Turn& a, const Turn& b) {
+  return a.sets == b.sets && a.take == b.take && a.same == b.same && a.different == b.different &&
+         a.only_if_nothing == b.only_if_nothing;
+}
+
+Meaning in_turns(std::vector<Turn> turns) {
+  Meaning meaning;
+  meaning.sets.clear();
+  for (const Turn& turn : turns)
+    std::copy_if(turn.sets.begin(), turn.sets.end(), std::back_inserter(meaning.sets),
+                 [&meaning](const FeatureSet& set) { return !contains(meaning.sets, set); });
+  meaning.turns = std::move(turns);
+  return meaning;
+}
 
 bool is_place(const std::string& object_type) { return object_type == "pallet"; }
 

@@ -29,27 +29,44 @@ struct Which {
 bool operator==(const Which& a, const Which& b);
 std::string to_string(Which::Rule rule);
 
-/// A union of products of object types and textures and, where the words say so, which of several objects is meant. One
-/// product without `which` is a meaning of the paper (section 3.1).
+/// One of an object's two names.
+enum class Part { object_type, texture };
+std::string to_string(Part part);
+
+/// One of the things that a command wants done, one after the other: which objects are taken, and how many of them.
+struct Turn {
+  std::vector<FeatureSet> sets;       // one at least
+  std::optional<int> take;            // so many, 1 at least; none: until no other object on the table could join
+  std::vector<Part> same, different;  // in what all that the turn takes are alike, in what each two differ
+  bool only_if_nothing = false;       // left out if the turn before found something; never in the first
+};
+bool operator==(const Turn& a, const Turn& b);
+
+/// A union of products of object types and textures and, where the words say so, which of several objects is meant, or
+/// how they are used in turn (core/turns.hpp). One product without either is a meaning of the paper (section 3.1).
 struct Meaning {
-  std::vector<FeatureSet> sets{1};  // one at least
+  std::vector<FeatureSet> sets{1};  // one at least; with turns, those of all turns, each once
   std::optional<Which> which;
+  std::vector<Turn> turns = {};  // empty: nothing is said of it; never together with `which`
 
   Meaning() = default;
   Meaning(FeatureSet product) : sets{std::move(product)} {}
   Meaning(std::vector<std::string> object_types, std::vector<std::string> textures)
       : sets{{std::move(object_types), std::move(textures)}} {}
 
-  bool is_product() const { return sets.size() == 1 && !which; }
+  bool is_product() const { return sets.size() == 1 && !which && turns.empty(); }
   /// The one product. @throws MethodError where there is more to the meaning.
   FeatureSet& product();
   const FeatureSet& product() const;
-  /// Whether the object is in any of the sets. Which of several is meant depends on the scene: grounded().
+  /// Whether the object is in any of the sets. Which of several is meant depends on the scene, and with turns on what
+  /// was brought: grounded().
   bool belongs(const std::string& object_type, const std::string& texture) const;
   /// Whether no object can belong.
   bool empty() const;
 };
 bool operator==(const Meaning& a, const Meaning& b);
+/// The meaning of those turns, one at least.
+Meaning in_turns(std::vector<Turn> turns);
 
 /// The object's place in the order of `which`, from 0, or the order's length for an object that it does not name. A
 /// name may be both an object type and a texture: the order is of the kind of which the sets hold more of its names.

@@ -28,6 +28,7 @@ Json to_json(const Scene& scene) {
   if (scene.friction != 1) json["friction"] = scene.friction;
   if (scene.mass != 1) json["mass"] = scene.mass;
   if (!scene.own.is_null()) json["own"] = scene.own;
+  if (scene.errand) json["errand"] = to_json(*scene.errand);
   return json;
 }
 

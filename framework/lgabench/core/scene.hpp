@@ -2,11 +2,13 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <lgabench/core/geometry.hpp>
 #include <lgabench/core/json.hpp>
+#include <lgabench/core/meaning.hpp>
 
 namespace lgabench {
 
@@ -40,6 +42,9 @@ struct Scene {
   std::vector<SceneObject> objects;  // ordered by instance_id
   double friction = 1, mass = 1;     // of what can be moved, times those of its type
   Json own = nullptr;                // what else an environment in Python was told; null: nothing
+  /// What the scene is judged by where its command says how objects are used: a judge never sees commands. Written and
+  /// hashed only where there is one.
+  std::optional<Meaning> errand = {};
 
   /// Stable over hosts and versions; covers every field.
   std::uint64_t hash() const;
