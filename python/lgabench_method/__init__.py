@@ -29,16 +29,16 @@ import numpy
 import numpy.typing
 
 from lgabench_method.stream import RandomStream
+from lgabench_method.turns import PLACE, is_done, wanted
 
 __all__ = ["Command", "Demonstration", "FeatureSet", "FeatureSpace", "HumanAnswers", "Hypothesis", "Instance", "Instruction",
            "LanguageModel", "Meaning", "Method", "Needs", "Observation", "Perturbation", "Policy", "RandomStream", "Refused", "SecondRole", "SecondSet",
-           "Selection", "Services", "Shown", "Step", "TrainingLog", "Which", "goal_mask", "grounded", "select_features",
-           "select_meaning", "taken"]
+           "Selection", "Services", "Shown", "Step", "TrainingLog", "Turn", "Which", "goal_mask", "grounded", "is_done", "select_features",
+           "select_meaning", "taken", "wanted"]
 
 Bytes = numpy.typing.NDArray[numpy.uint8]
 Numbers = numpy.typing.NDArray[numpy.float64]
 Picture = Union[tuple[str, numpy.typing.ArrayLike], tuple[str, numpy.typing.ArrayLike, str]]
-PLACE = "pallet"  # the object type of the place that things are brought to: never what a rule means
 Question = tuple[str, str, str]  # about "target" or SecondRole.id, group "object_type" or "texture", candidate
 
 
@@ -99,10 +99,33 @@ class Which:
 
 
 @dataclass
+class Turn:
+    """One of the things that a command wants done, one after the other: `take` so many objects of the sets, or, where it is None, as
+    long as another on the table could join. `same` and `different` are parts, "object_type" and "texture": in what all that the turn
+    takes are alike, in what each two differ. `only_if_nothing`: left out if the turn before found something."""
+    sets: list[FeatureSet]
+    take: Optional[int] = None
+    same: list[str] = field(default_factory=list)
+    different: list[str] = field(default_factory=list)
+    only_if_nothing: bool = False
+
+
+@dataclass
 class Meaning:
-    """A union of products of object types and textures and, where the words say so, which of several objects is meant."""
+    """A union of products of object types and textures and, where the words say so, which of several objects is meant, or how they
+    are used in turn: `sets` are then those of all turns, each once, as Meaning.in_turns() makes them."""
     sets: list[FeatureSet]
     which: Optional[Which] = None
+    turns: list[Turn] = field(default_factory=list)
+
+    @classmethod
+    def in_turns(cls, turns: list[Turn]) -> Meaning:
+        """The meaning of those turns."""
+        sets: list[FeatureSet] = []
+        for one in (one for turn in turns for one in turn.sets):
+            if one not in sets:
+                sets.append(one)
+        return cls(sets, None, turns)
 
     def belongs(self, object_type: str, texture: str) -> bool:
         """Whether the object is in any of the sets."""
@@ -140,7 +163,7 @@ class Selection:
     @property
     def target(self) -> FeatureSet:
         """The meaning's one product; ValueError where it is more."""
-        if len(self.meaning.sets) != 1 or self.meaning.which:
+        if len(self.meaning.sets) != 1 or self.meaning.which or self.meaning.turns:
             raise ValueError("Selection.target: the meaning is more than one product; read Selection.meaning, or grounded()")
         return self.meaning.sets[0]
 
@@ -358,8 +381,13 @@ def select_meaning(command: Command, space: FeatureSpace, lm: LanguageModel) -> 
 
 
 def grounded(meaning: Meaning, observation: Observation) -> list[int]:
-    """Ids of the visible instances that are meant, as lgabench::grounded() of core/meaning.hpp finds them."""
+    """Ids of the visible instances that are meant, as lgabench::grounded() of core/meaning.hpp finds them. With turns: that are
+    wanted() now, by what is visible and what was brought, as they are named."""
     visible = [one for one in observation.instances if one.pixels > 0]
+    if meaning.turns:
+        names = [(one.object_type, one.texture) for one in visible]
+        wants = wanted(meaning, names, observation.brought)
+        return [one.id for one, name in zip(visible, names) if name in wants]
     which = meaning.which
     if which is None:
         return [one.id for one in visible if meaning.belongs(one.object_type, one.texture)]

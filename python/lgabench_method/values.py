@@ -7,7 +7,7 @@ from typing import Any
 import numpy
 
 from lgabench_method import (Command, Demonstration, FeatureSet, FeatureSpace, Hypothesis, Instance, Instruction, Meaning, Needs,
-                             Observation, SecondRole, SecondSet, Selection, Shown, Step, Which)
+                             Observation, SecondRole, SecondSet, Selection, Shown, Step, Turn, Which)
 
 
 def command(json):
@@ -38,7 +38,24 @@ def _set_json(value: FeatureSet) -> dict[str, list[str]]:
     return {"object_types": [str(name) for name in value.object_types], "textures": [str(name) for name in value.textures]}
 
 
+def _turn(json):
+    return Turn([_set(one) for one in json["sets"]], None if json["take"] == "all" else json["take"], list(json.get("same", [])),
+                list(json.get("different", [])), json.get("only_if_nothing", False))
+
+
+def _turn_json(value):
+    json = {"sets": [_set_json(one) for one in value.sets], "take": "all" if value.take is None else int(value.take)}
+    for name in ("same", "different"):
+        if getattr(value, name):
+            json[name] = [str(part) for part in getattr(value, name)]
+    if value.only_if_nothing:
+        json["only_if_nothing"] = True
+    return json
+
+
 def meaning(json):
+    if "turns" in json:
+        return Meaning.in_turns([_turn(one) for one in json["turns"]])
     if "sets" not in json:
         return Meaning([_set(json)])
     which = json.get("which")
@@ -51,6 +68,8 @@ def hypotheses(json):
 
 
 def _meaning_json(value):
+    if value.turns:
+        return {"turns": [_turn_json(one) for one in value.turns]}
     if len(value.sets) == 1 and value.which is None:
         return _set_json(value.sets[0])
     json = {"sets": [_set_json(one) for one in value.sets]}

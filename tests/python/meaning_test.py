@@ -8,9 +8,9 @@ import numpy
 
 import lgabench
 from lgabench_method import (Demonstration, FeatureSet, Instance, Instruction, Observation, Selection, Step, goal_mask, grounded,
-                             taken, values)
+                             is_done, taken, values, wanted)
 
-GOLDEN = json.loads((pathlib.Path(__file__).parents[1] / "unit/golden/grounded.json").read_text())
+GOLDEN, TURNS = (json.loads((pathlib.Path(__file__).parents[1] / f"unit/golden/{name}.json").read_text()) for name in ("grounded", "turns"))
 
 
 def drawn(case):
@@ -21,18 +21,31 @@ def drawn(case):
             row, column, height, width = one["pixels"]
             ids[row:row + height, column:column + width] = one["id"]
         instances.append(Instance(one["id"], one["object_type"], one["texture"], int((ids == one["id"]).sum())))
-    return Observation(numpy.zeros((*ids.shape, 3), numpy.uint8), ids, instances)
+    return Observation(numpy.zeros((*ids.shape, 3), numpy.uint8), ids, instances, brought=things(case.get("brought", [])))
+
+
+def things(names):
+    return [tuple(one) for one in names]
 
 
 class Meanings(unittest.TestCase):
     def test_what_is_meant_is_what_cpp_finds(self):
-        self.assertGreaterEqual(len(GOLDEN["cases"]), 26)
+        self.assertGreaterEqual(len(GOLDEN["cases"]), 29)
         for case in GOLDEN["cases"]:
             with self.subTest(case["name"]):
                 scene, selection = drawn(case), values.selection({"target": case["target"]})
                 self.assertEqual(grounded(selection.meaning, scene), case["meant"])
                 shown = set(numpy.unique(scene.ids[goal_mask(scene, selection) == 1]))
                 self.assertEqual(shown, set(case["meant"]))
+
+    def test_what_is_wanted_next_and_when_all_is_done(self):
+        self.assertGreaterEqual(len(TURNS["cases"]), 33)
+        for case in TURNS["cases"]:
+            with self.subTest(case["name"]):
+                meaning = values.meaning({"turns": case["turns"]})
+                on_table, brought = things(case["on_table"]), things(case["brought"])
+                self.assertEqual(wanted(meaning, on_table, brought), things(case["wanted"]))
+                self.assertEqual(is_done(meaning, on_table, brought), case["done"])
 
     def test_a_meaning_comes_back_from_the_frame(self):
         for case in GOLDEN["cases"]:

@@ -28,6 +28,7 @@ MESSAGES = {name: one for name, one in SCHEMA["definitions"].items() if "x-kind"
 COMMAND, SPACE = {"utterance": "Bring me the heart.", "task": "pick_and_place"}, {"id": "tabletop", "object_types": ["heart"], "textures": ["red"]}
 SET = {"object_types": ["heart"], "textures": ["red"]}
 MEANING = {"sets": [SET], "which": {"rule": "left_of", "of": SET}}
+TURNS = {"turns": [{"sets": [SET], "take": "all", "different": ["texture"]}, {"sets": [SET], "take": 2, "same": ["object_type"], "only_if_nothing": True}]}
 SELECTION = {"target": SET, "provenance": "recorded", "source": "M", "asked_as": "words"}
 INSTRUCTION, SEEN = {"utterance": COMMAND["utterance"], "selection": SELECTION}, {"id": 3, "object_type": "heart", "texture": "red", "pixels": 9}
 NO_ARRAY = {"offset": 0, "type": "u1", "shape": [0, 2, 2]}  # of no demonstrations
@@ -81,7 +82,7 @@ class Changes:
         return seen
 '''
 ANSWERS = {"ask": {"type": "answers", "answers": [True], **ANSWERED}, "meaning": {"type": "meaning", "meaning": MEANING, **ANSWERED},
-           "hypotheses": {"type": "hypotheses", "hypotheses": [{"text": "ripe", "meaning": SET, "weight": .5}], **ANSWERED},
+           "hypotheses": {"type": "hypotheses", "hypotheses": [{"text": "ripe", "meaning": TURNS, "weight": .5}], **ANSWERED},
            "specify": {"type": "person", "selection": SELECTION}, "edit": {"type": "person", "selection": SELECTION},
            "accept": {"type": "accepts", "accepts": True}, "scene": {"type": "scene", "objects": [{**SEEN, "row": 1.5, "column": .5}]},
            "takes": {"type": "takes", "takes": False}, "which": {"type": "which", "instance": None}}

@@ -7,15 +7,19 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <set>
 #include <utility>
 
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/error.hpp>
+#include <lgabench/core/turns.hpp>
 
 namespace lgabench {
 namespace {
 
-constexpr std::size_t most_sets = 100;
+constexpr std::size_t most_sets = 100, most_turns = 10;
+constexpr int most_taken = 100;
+constexpr const char* all_of_them = "all";  // of Turn::take
 
 using Rule = Which::Rule;
 constexpr std::array<std::pair<Rule, const char*>, 7> rules{{{Rule::left_of, "left_of"},
@@ -61,17 +65,79 @@ Which read_which(const JsonReader& reader, const ReadSet& read_set) {
   return which;
 }
 
+std::vector<FeatureSet> read_sets(const JsonReader& reader, const ReadSet& read_set) {
+  std::vector<FeatureSet> sets;
+  const auto elements = reader.elements();
+  if (elements.empty() || elements.size() > most_sets) reader.fail(fmt::format("1 to {} sets", most_sets));
+  for (const JsonReader& set : elements) sets.push_back(read_set(set));
+  return sets;
+}
+
+std::vector<Part> read_parts(const JsonReader& turn, const char* member) {
+  std::vector<Part> parts;
+  if (!turn.has(member)) return parts;
+  for (const JsonReader& word : turn.at(member).elements()) {
+    const auto is_it = [&word](Part part) { return word.json() == to_string(part); };
+    if (!is_it(Part::object_type) && !is_it(Part::texture)) word.fail("object_type or texture");
+    const Part part = is_it(Part::object_type) ? Part::object_type : Part::texture;
+    if (contains(parts, part)) word.fail("each part once");
+    parts.push_back(part);
+  }
+  if (parts.empty()) turn.at(member).fail("object_type, texture or both");
+  return parts;
+}
+
+Turn read_turn(const JsonReader& reader, const ReadSet& read_set, bool is_first) {
+  reader.only({"sets", "take", "same", "different", "only_if_nothing"});
+  Turn turn{read_sets(reader.at("sets"), read_set), std::nullopt, read_parts(reader, "same"),
+            read_parts(reader, "different"), reader.has("only_if_nothing") && reader.at("only_if_nothing").boolean()};
+  if (const JsonReader take = reader.at("take"); take.json().is_string()) {
+    if (take.json() != all_of_them) take.fail("\"all\" or a number");
+  } else {
+    turn.take = static_cast<int>(take.integer(1, most_taken));
+  }
+  if (turn.only_if_nothing && is_first) reader.at("only_if_nothing").fail("a turn before it");
+  for (const Part part : turn.different)
+    if (contains(turn.same, part)) reader.at("different").fail("no part in which they are alike");
+  return turn;
+}
+
+Meaning read_turns(const JsonReader& reader, const ReadSet& read_set) {
+  const auto elements = reader.elements();
+  if (elements.empty() || elements.size() > most_turns) reader.fail(fmt::format("1 to {} turns", most_turns));
+  std::vector<Turn> turns;
+  for (const JsonReader& turn : elements) turns.push_back(read_turn(turn, read_set, turns.empty()));
+  Meaning meaning = in_turns(std::move(turns));
+  if (meaning.sets.size() > most_sets) reader.fail(fmt::format("1 to {} sets in all turns", most_sets));
+  return meaning;
+}
+
 Meaning read_meaning(const JsonReader& reader, const ReadSet& read_set) {
+  if (reader.has("turns")) {
+    reader.only({"turns"});
+    return read_turns(reader.at("turns"), read_set);
+  }
   if (!reader.has("sets")) return read_set(reader);
   reader.only({"sets", "which"});
   Meaning meaning;
-  meaning.sets.clear();
-  const auto sets = reader.at("sets").elements();
-  if (sets.empty() || sets.size() > most_sets) reader.at("sets").fail(fmt::format("1 to {} sets", most_sets));
-  for (const JsonReader& set : sets) meaning.sets.push_back(read_set(set));
+  meaning.sets = read_sets(reader.at("sets"), read_set);
   if (reader.has("which") && !reader.at("which").json().is_null())
     meaning.which = read_which(reader.at("which"), read_set);
   return meaning;
+}
+
+Json sets_json(const std::vector<FeatureSet>& sets) {
+  Json json = Json::array();
+  for (const FeatureSet& set : sets) json.push_back(to_json(set));
+  return json;
+}
+
+Json turn_json(const Turn& turn) {
+  Json json{{"sets", sets_json(turn.sets)}, {"take", turn.take ? Json(*turn.take) : Json(all_of_them)}};
+  for (const auto& [member, parts] : {std::pair("same", &turn.same), std::pair("different", &turn.different)})
+    for (const Part part : *parts) json[member].push_back(to_string(part));
+  if (turn.only_if_nothing) json["only_if_nothing"] = true;
+  return json;
 }
 
 bool all_in(const std::vector<std::string>& names, const std::vector<std::string>& space) {
@@ -105,6 +171,18 @@ std::optional<double> number_of(const Meaning& meaning, const Placed& one, const
   if (which.rule == Rule::left_of && !(one.column < reference.column)) return std::nullopt;
   if (which.rule == Rule::right_of && !(one.column > reference.column)) return std::nullopt;
   return which.rule == Rule::farthest_from ? -distance(one, reference) : distance(one, reference);
+}
+
+std::vector<std::uint8_t> next_in_turn(const Meaning& meaning, const std::vector<Placed>& visible,
+                                       const std::vector<Named>& brought) {
+  const auto name = [](const Placed& one) { return Named{one.instance.object_type, one.instance.texture}; };
+  std::vector<Named> on_table;
+  std::transform(visible.begin(), visible.end(), std::back_inserter(on_table), name);
+  const std::vector<Named> next = wanted(meaning, on_table, brought);
+  std::vector<std::uint8_t> meant;
+  for (const Placed& one : visible)
+    if (contains(next, name(one))) meant.push_back(one.instance.id);
+  return meant;
 }
 
 }  // namespace
@@ -143,6 +221,19 @@ std::string to_string(Part part) { return part == Part::object_type ? "object_ty
 bool operator==(const Turn& a, const Turn& b) {
   return a.sets == b.sets && a.take == b.take && a.same == b.same && a.different == b.different &&
          a.only_if_nothing == b.only_if_nothing;
+}
+
+Meaning with_each_set(Meaning meaning, const std::function<FeatureSet(const FeatureSet&, std::size_t)>& change) {
+  std::vector<FeatureSet> changed;
+  for (const FeatureSet& set : meaning.sets) changed.push_back(change(set, changed.size()));
+  for (Turn& turn : meaning.turns)
+    for (FeatureSet& set : turn.sets) {
+      const auto number = std::find(meaning.sets.begin(), meaning.sets.end(), set) - meaning.sets.begin();
+      set = changed.at(static_cast<std::size_t>(number));
+    }
+  if (!meaning.turns.empty()) return in_turns(std::move(meaning.turns));
+  meaning.sets = std::move(changed);
+  return meaning;
 }
 
 Meaning in_turns(std::vector<Turn> turns) {
@@ -190,10 +281,12 @@ std::vector<Placed> placed(const Observation& observation) {
 }
 
 std::vector<std::uint8_t> grounded(const Meaning& meaning, const Observation& observation) {
-  return grounded(meaning, placed(observation));
+  return grounded(meaning, placed(observation), observation.brought);
 }
 
-std::vector<std::uint8_t> grounded(const Meaning& meaning, const std::vector<Placed>& visible) {
+std::vector<std::uint8_t> grounded(const Meaning& meaning, const std::vector<Placed>& visible,
+                                   const std::vector<Named>& brought) {
+  if (!meaning.turns.empty()) return next_in_turn(meaning, visible, brought);
   const auto belongs = [&meaning](const Instance& one) { return meaning.belongs(one.object_type, one.texture); };
   std::vector<std::uint8_t> meant;
   if (!meaning.which) {
@@ -221,8 +314,12 @@ std::vector<std::uint8_t> grounded(const Meaning& meaning, const std::vector<Pla
 
 Json to_json(const Meaning& meaning) {
   if (meaning.is_product()) return to_json(meaning.sets.front());
-  Json json{{"sets", Json::array()}};
-  for (const FeatureSet& set : meaning.sets) json["sets"].push_back(to_json(set));
+  if (!meaning.turns.empty()) {
+    Json turns = Json::array();
+    for (const Turn& turn : meaning.turns) turns.push_back(turn_json(turn));
+    return {{"turns", std::move(turns)}};
+  }
+  Json json{{"sets", sets_json(meaning.sets)}};
   if (!meaning.which) return json;
   json["which"]["rule"] = to_string(meaning.which->rule);
   if (meaning.which->of) json["which"]["of"] = to_json(*meaning.which->of);
@@ -236,6 +333,22 @@ Meaning read_meaning(const JsonReader& reader, const FeatureSpace& space) {
       !all_in(meaning.which->order, space.textures))
     reader.at("which").at("order").fail("object types of the feature space alone, or textures alone");
   return meaning;
+}
+
+void expect_possible(const Meaning& meaning, const JsonReader& reader) {
+  for (std::size_t i = 0; i < meaning.turns.size(); ++i) {
+    const Turn& turn = meaning.turns[i];
+    for (const Part part : turn.different) {
+      std::set<std::string> names;
+      for (const FeatureSet& set : turn.sets)
+        for (const std::string& name : part == Part::object_type ? set.object_types : set.textures)
+          if (!is_place(name)) names.insert(name);
+      if (turn.take && static_cast<std::size_t>(*turn.take) > names.size())
+        reader.at("turns").elements()[i].at("take").fail(
+            fmt::format("at most {}: its sets have no more {}", names.size(),
+                        part == Part::object_type ? "object types" : "textures"));
+    }
+  }
 }
 
 Meaning read_unchecked_meaning(const JsonReader& reader) {

@@ -1,5 +1,7 @@
 // The meaning of a command's words, or of a Selection: sets of objects, and which of several is meant.
 #pragma once
+#include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -67,6 +69,8 @@ struct Meaning {
 bool operator==(const Meaning& a, const Meaning& b);
 /// The meaning of those turns, one at least.
 Meaning in_turns(std::vector<Turn> turns);
+/// The meaning with each of its sets changed, in its turns too; `change` is also told the set's number in `sets`.
+Meaning with_each_set(Meaning meaning, const std::function<FeatureSet(const FeatureSet&, std::size_t)>& change);
 
 /// The object's place in the order of `which`, from 0, or the order's length for an object that it does not name. A
 /// name may be both an object type and a texture: the order is of the kind of which the sets hold more of its names.
@@ -85,20 +89,28 @@ std::vector<Placed> placed(const Observation& observation);
 /// it, the one that the rule names is meant, and those within half a pixel of it or of the same place in `order`. A
 /// centre is the mean row and column of an instance's visible pixels. Instances that match `of` are references and no
 /// candidates; each candidate counts from its nearest reference. Where a rule has no reference in view, nothing is
-/// meant. Place types (`is_place`) are no candidates of a rule.
+/// meant. Place types (`is_place`) are no candidates of a rule. With turns, those are meant that are wanted() now: of
+/// what is visible and what was brought, as they are named.
 std::vector<std::uint8_t> grounded(const Meaning& meaning, const Observation& observation);
-std::vector<std::uint8_t> grounded(const Meaning& meaning, const std::vector<Placed>& visible);
+std::vector<std::uint8_t> grounded(const Meaning& meaning, const std::vector<Placed>& visible,
+                                   const std::vector<Named>& brought = {});
 
 /// Whether the object type is that of the place which things are brought to. A rule never means a place.
 bool is_place(const std::string& object_type);
 
-/// One product is written as a FeatureSet, any other meaning as {"sets": [...], "which": {"rule", "of", "order"}}.
+/// One product is written as a FeatureSet, a meaning with turns as {"turns": [{"sets", "take", "same", "different",
+/// "only_if_nothing"}, ...]}, any other as {"sets": [...], "which": {"rule", "of", "order"}}.
 Json to_json(const Meaning& meaning);
 
 /// Reads what to_json() writes; in lists also "ALL" and {"except": [...]}. @throws InputError with file and place for
 /// a name that the space lacks or that is given twice, an unknown rule, a rule without what it needs or with more, an
-/// order of object types and textures both, or more than 100 sets.
+/// order of object types and textures both, more than 100 sets, no turn or more than 10, a number below 1, a first turn
+/// that needs one before it, or objects that are both alike and not in a part.
 Meaning read_meaning(const JsonReader& reader, const FeatureSpace& space);
+
+/// Refuses turns that ask for more than there can be: more objects, all of different types, than the sets have types.
+/// `reader` is where the meaning was read. @throws InputError with file and place.
+void expect_possible(const Meaning& meaning, const JsonReader& reader);
 
 /// Reads a method's meaning, whose names nobody has checked against a space.
 Meaning read_unchecked_meaning(const JsonReader& reader);

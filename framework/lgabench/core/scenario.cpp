@@ -42,6 +42,7 @@ ScenarioCommand read_command(const JsonReader& reader, const Scenario& scenario)
   reader.only({"utterance", "truth", "seen", "arm", "ambiguous", "wording"});
   ScenarioCommand command{reader.at("utterance").string(),
                           read_distribution(reader.at("truth"), scenario.space, scenario.second)};
+  expect_possible(command.truth.target, reader.at("truth").at("target"));
   command.truth.provenance = Provenance::truth;
   command.truth.source = "true distribution";
   command.truth.asked_as = command.utterance;

@@ -1,6 +1,8 @@
 #include <lgabench/core/scene.hpp>
 
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/turns.hpp>
 
 namespace lgabench {
 
@@ -33,6 +35,16 @@ Json to_json(const Scene& scene) {
 }
 
 std::uint64_t Scene::hash() const { return hash64(canonical(to_json(*this))); }
+
+std::vector<bool> meant_at_first(const Scene& scene) {
+  std::vector<Named> on_table, next;
+  for (const SceneObject& one : scene.objects) on_table.push_back({one.object_type, one.texture});
+  if (scene.errand) next = wanted(*scene.errand, on_table, {});
+  std::vector<bool> meant;
+  for (std::size_t i = 0; i < on_table.size(); ++i)
+    meant.push_back(scene.errand ? contains(next, on_table[i]) : scene.objects[i].role == role::target);
+  return meant;
+}
 
 const SceneObject* Scene::find(const Role& role) const {
   for (const SceneObject& o : objects)

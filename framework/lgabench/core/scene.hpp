@@ -55,4 +55,8 @@ struct Scene {
 
 Json to_json(const Scene& scene);
 
+/// Which of the scene's objects are meant before anything was brought, by their place in `objects`: those that its
+/// errand wants, without one its targets.
+std::vector<bool> meant_at_first(const Scene& scene);
+
 }  // namespace lgabench

@@ -64,8 +64,8 @@ struct Selection {
 
   /// Whether nothing can be shown: the target is empty, or the task's second set is. Such a cell is not trained.
   bool empty() const { return target.empty() || (second && second->empty()); }
-  /// Whether the target, or the second set, names both of the object's features. With `target.which`, the objects that
-  /// a goal mask keeps depend on the scene as well: see grounded().
+  /// Whether the target, or the second set, names both of the object's features. With `target.which`, and
+  /// with its turns, the objects that a goal mask keeps depend on the scene as well: see grounded().
   bool belongs(const std::string& object_type, const std::string& texture) const {
     return target.belongs(object_type, texture) || (second && second->contains(object_type, texture));
   }
