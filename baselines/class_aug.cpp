@@ -19,9 +19,9 @@ class ClassAug : public PixelPolicy {
                       "member elsewhere depends",
                       command.second->phrase));
     Selection selection = PixelPolicy::select(command, space, services);
-    if (selection.target.which)
+    if (selection.target.which || !selection.target.turns.empty())
       throw MethodError(
-          "class_aug: expected a meaning without a rule, since a member elsewhere may not be the one meant");
+          "class_aug: expected a meaning without a rule or turns, since a member elsewhere may not be the one meant");
     textures_ = space.textures;
     return selection;
   }

@@ -26,7 +26,7 @@ class LgaTaken : public CloningMethod {
     Meaning& target = revised.target;
     if (target.is_product()) {
       target = with(taken, target.product(), space_);
-    } else {
+    } else if (target.turns.empty()) {  // what is shown does not say in which turn it was taken
       for (const auto& [type, texture] : taken.objects)
         if (!target.belongs(type, texture)) target.sets.push_back({{type}, {texture}});
     }

@@ -33,7 +33,10 @@ class ChoosesWithin : public Policy {
     const std::vector<std::uint8_t> kept = grounded(meant, observation);
     const TakenLooks target = most_demonstrated(observation, found->second.taken,
                                                 [&kept](const Instance& one) { return contains(kept, one.id); });
-    if (!target.none()) meant.sets = sets_of(target);  // its rule, which means the first of an order, means the same
+    if (!target.none()) {
+      meant.sets = sets_of(target);  // its rule, which means the first of an order, means the same
+      meant.turns.clear();           // they want it next
+    }
     if (auto& second = chosen.selection.second) {
       const TakenLooks receiver = most_demonstrated(observation, found->second.received, [&](const Instance& one) {
         return second->contains(one.object_type, one.texture) && !target.has(one);
@@ -63,7 +66,10 @@ class LgaThenTaken : public CloningMethod {
     for (Demonstration& one : shown) {
       const TakenFeatures one_taken = taken_by({one}, services.actions);
       Selection& selection = one.instruction.selection;
-      if (!one_taken.taken.none()) selection.target.sets = sets_of(one_taken.taken);
+      if (!one_taken.taken.none()) {
+        selection.target.sets = sets_of(one_taken.taken);
+        selection.target.turns.clear();
+      }
       if (selection.second && !one_taken.received.none())
         static_cast<FeatureSet&>(*selection.second) = with(one_taken.received, {}, space_);
     }

@@ -1,4 +1,4 @@
-lgabench_unit_test(abstraction_test READ SOURCES abstraction_test.cpp preference_test.cpp selection_errors_test.cpp textualization_test.cpp LINK lgabench_core)
+lgabench_unit_test(abstraction_test READ SOURCES abstraction_test.cpp preference_test.cpp selection_errors_test.cpp textualization_test.cpp told_turns_test.cpp LINK lgabench_core)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)  # with the macros that the library was built with
 find_package(OpenSSL REQUIRED COMPONENTS SSL Crypto)  # a server over TLS, and its certificate

@@ -39,10 +39,11 @@ std::vector<std::vector<Seen>> training_scenes(const Scenario& scenario, const s
   for (int i = 0; i < count; ++i) {
     const Scene drawn = training_scene(scenario, layout, {}, training_seed, i);
     Seen& scene = scenes.at(static_cast<std::size_t>(drawn.command)).emplace_back();
-    for (const SceneObject& object : drawn.objects)
-      if (!is_place(object.object_type))
+    const std::vector<bool> meant = meant_at_first(drawn);
+    for (std::size_t k = 0; k < meant.size(); ++k)
+      if (const SceneObject& object = drawn.objects[k]; !is_place(object.object_type))
         scene.push_back({place_of(object.object_type, scenario.space.object_types),
-                         place_of(object.texture, scenario.space.textures), object.role == role::target});
+                         place_of(object.texture, scenario.space.textures), meant[k]});
   }
   return scenes;
 }

@@ -42,7 +42,7 @@ Table roles_of(const Observation& observation, const Selection& selection, Insta
   for (const Instance& instance : observation.instances)
     roles[instance.id] =
         selection.second && selection.second->contains(instance.object_type, instance.texture) ? second_role : 0;
-  if (selection.target.which) {
+  if (selection.target.which || !selection.target.turns.empty()) {
     for (const std::uint8_t id : grounded(selection.target, observation)) roles[id] = target_role;
   } else {
     for (const Instance& instance : observation.instances)

@@ -23,10 +23,10 @@ Selection TruthAsHuman::specify(const Command& command) { return truth_of(comman
 Selection TruthAsHuman::edit(const Command& command, const Selection& proposal) {
   const Selection& truth = truth_of(command);
   Selection edited = proposal;
-  if (edited.target.sets.size() != truth.target.sets.size()) edited.target.sets = truth.target.sets;
-  for (std::size_t i = 0; i < truth.target.sets.size(); ++i)
-    edited.target.sets[i].object_types = truth.target.sets[i].object_types;
-  edited.target.which = truth.target.which;
+  edited.target = with_each_set(truth.target, [&](const FeatureSet& set, std::size_t i) {
+    const bool alike = proposal.target.sets.size() == truth.target.sets.size();
+    return FeatureSet{set.object_types, alike ? proposal.target.sets[i].textures : set.textures};
+  });
   if (edited.second && truth.second) edited.second->object_types = truth.second->object_types;
   edited.provenance = Provenance::simulated_edit;
   edited.source += ", object types corrected to the true ones";

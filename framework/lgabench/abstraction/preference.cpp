@@ -83,8 +83,9 @@ Preference::Preference(const Meaning& words, const std::vector<Hypothesis>& hypo
     std::vector<bool> pairs = pairs_of(one.meaning, space);
     Meaning rule;
     rule.which = one.meaning.which;
+    rule.turns = one.meaning.turns;
     const auto [at, is_new] =
-        known.try_emplace({pairs, rule.which ? canonical(to_json(rule)) : ""}, candidates_.size());
+        known.try_emplace({pairs, rule.is_product() ? "" : canonical(to_json(rule))}, candidates_.size());
     if (!is_new) {
       logs_[at->second] = std::log(std::exp(logs_[at->second]) + prior);
       return;
@@ -103,7 +104,7 @@ void Preference::took(const Observation& seen, std::uint8_t instance) {
   const std::vector<Placed> visible = placed(seen);
   const auto in_view = std::count_if(seen.instances.begin(), seen.instances.end(), can_be_taken);
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    std::vector<std::uint8_t> held = grounded(candidates_[i].meaning, visible);
+    std::vector<std::uint8_t> held = grounded(candidates_[i].meaning, visible, seen.brought);
     for (const Placed& one : visible)
       if (is_place(one.instance.object_type))
         held.erase(std::remove(held.begin(), held.end(), one.instance.id), held.end());

@@ -43,7 +43,10 @@ RecordedAnswer read_answer(const JsonReader& entry, const FeatureSpace& space, c
                         {},
                         {},
                         {}};
-  if (entry.has("structured")) answer.structured = read_meaning(entry.at("structured"), space);
+  if (entry.has("structured")) {
+    answer.structured = read_meaning(entry.at("structured"), space);
+    expect_possible(*answer.structured, entry.at("structured"));
+  }
   if (entry.has("hypotheses")) answer.hypotheses = read_hypotheses(entry.at("hypotheses"), space);
   for (const std::string& role : roles)
     if (entry.has(role)) answer.second[role] = read_feature_set(entry.at(role), space);

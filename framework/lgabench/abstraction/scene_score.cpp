@@ -18,7 +18,27 @@ std::vector<FeatureSet> undecided_of(const Scenario& scenario) {
   return sets;
 }
 
+// The same turns, but for their sets.
+bool are_alike(const Turn& a, const Turn& b) {
+  const auto same_parts = [](const std::vector<Part>& some, const std::vector<Part>& others) {
+    return std::is_permutation(some.begin(), some.end(), others.begin(), others.end());
+  };
+  return a.take == b.take && a.only_if_nothing == b.only_if_nothing && same_parts(a.same, b.same) &&
+         same_parts(a.different, b.different);
+}
+
+Meaning sets_of(const Turn& turn) {
+  Meaning meaning;
+  meaning.sets = turn.sets;
+  return meaning;
+}
+
 bool has_exact_sets(const Scenario& scenario, const Meaning& selected, const Meaning& truth) {
+  if (selected.turns.size() != truth.turns.size()) return false;
+  for (std::size_t i = 0; i < truth.turns.size(); ++i)
+    if (!are_alike(selected.turns[i], truth.turns[i]) ||
+        !has_exact_sets(scenario, sets_of(selected.turns[i]), sets_of(truth.turns[i])))
+      return false;
   const std::vector<FeatureSet> undecided = undecided_of(scenario);
   for (const std::string& type : scenario.space.object_types)
     for (const std::string& texture : scenario.space.textures) {
@@ -34,12 +54,14 @@ bool has_exact_sets(const Scenario& scenario, const Meaning& selected, const Mea
 void add_scene(const Scene& scene, const Observation& seen, const std::vector<std::uint8_t>& kept, bool astray,
                SceneScore& score) {
   bool exact = !astray;
-  for (const SceneObject& object : scene.objects) {
+  const std::vector<bool> meant = meant_at_first(scene);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const SceneObject& object = scene.objects[i];
     const auto instance = std::find_if(seen.instances.begin(), seen.instances.end(),
                                        [&](const Instance& one) { return one.id == object.instance_id; });
     if (instance == seen.instances.end() || instance->pixels == 0) continue;
     const bool is_kept = contains(kept, object.instance_id);
-    const bool is_meant = object.role == role::target;
+    const bool is_meant = meant[i];
     score.kept += is_kept;
     score.meant += is_meant;
     score.right += is_kept && is_meant;

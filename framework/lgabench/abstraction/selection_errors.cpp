@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/fields.hpp>
@@ -13,25 +15,51 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-// Of all names in their order, those that are selected after errors.
-Names erring(const Names& all, const Names& selected, const Names& truth, const SelectionErrors& errors,
-             RandomStream& random) {
-  Names some;
-  for (const std::string& name : all) {
-    const double drawn = random.uniform();  // for every name, so that no other's depends on what was selected
-    const bool right = contains(truth, name);
-    if (drawn < (right ? errors.missing : errors.added) ? !right : contains(selected, name)) some.push_back(name);
+// Which names err, by one number for each name of the space, whatever was selected.
+class Erring {
+ public:
+  Erring(const FeatureSpace& space, const SelectionErrors& errors, RandomStream& random, const std::string& never_meant)
+      : errors_(errors), never_meant_(never_meant) {
+    types_ = drawn(space.object_types, random);
+    textures_ = drawn(space.textures, random);
   }
-  return some;
-}
 
-FeatureSet erring(const FeatureSpace& space, const FeatureSet& selected, const FeatureSet& truth,
-                  const SelectionErrors& errors, RandomStream& random, const std::string& never_meant) {
-  FeatureSet set{erring(space.object_types, selected.object_types, truth.object_types, errors, random),
-                 erring(space.textures, selected.textures, truth.textures, errors, random)};
-  set.object_types.erase(std::remove(set.object_types.begin(), set.object_types.end(), never_meant),
-                         set.object_types.end());
-  return set;
+  FeatureSet operator()(const FeatureSet& selected, const FeatureSet& truth) const {
+    FeatureSet set{after(types_, selected.object_types, truth.object_types),
+                   after(textures_, selected.textures, truth.textures)};
+    set.object_types.erase(std::remove(set.object_types.begin(), set.object_types.end(), never_meant_),
+                           set.object_types.end());
+    return set;
+  }
+
+ private:
+  using Drawn = std::vector<std::pair<std::string, double>>;
+
+  static Drawn drawn(const Names& names, RandomStream& random) {
+    Drawn all;
+    for (const std::string& name : names) all.emplace_back(name, random.uniform());
+    return all;
+  }
+  Names after(const Drawn& all, const Names& selected, const Names& truth) const {
+    Names some;
+    for (const auto& [name, number] : all) {
+      const bool right = contains(truth, name);
+      if (number < (right ? errors_.missing : errors_.added) ? !right : contains(selected, name)) some.push_back(name);
+    }
+    return some;
+  }
+
+  SelectionErrors errors_;
+  std::string never_meant_;
+  Drawn types_, textures_;
+};
+
+Meaning erring(const Meaning& selected, const Meaning& truth, const Erring& errs) {
+  if (selected.turns.empty() && !selected.is_product()) selected.product();  // which refuses it
+  if (selected.sets.size() != truth.sets.size())
+    throw MethodError(fmt::format("errors in what is selected: expected as many sets as are meant, {}, got {}",
+                                  truth.sets.size(), selected.sets.size()));
+  return with_each_set(selected, [&](const FeatureSet& set, std::size_t i) { return errs(set, truth.sets[i]); });
 }
 
 }  // namespace
@@ -58,8 +86,8 @@ SelectionErrors read_selection_errors(const JsonReader& reader) { return value_o
 
 std::string why_no_selection_errors(const Scenario& scenario) {
   for (const ScenarioCommand& command : scenario.commands)
-    if (!command.truth.target.is_product())
-      return fmt::format("expected commands that mean one product of types and textures, \"{}\" means more",
+    if (!command.truth.target.is_product() && command.truth.target.turns.empty())
+      return fmt::format("expected commands that mean one product of types and textures, or turns, \"{}\" means more",
                          command.utterance);
   return "";
 }
@@ -75,11 +103,10 @@ Selection with_errors(Selection selected, const Scenario& scenario, int command,
                       RandomStream random, const std::string& never_meant) {
   if (errors.none() || selected.provenance == Provenance::none) return selected;
   const ScenarioCommand& meant = scenario.commands.at(static_cast<std::size_t>(command));
-  selected.target =
-      erring(scenario.space, selected.target.product(), meant.truth.target.product(), errors, random, never_meant);
+  selected.target = erring(selected.target, meant.truth.target, Erring(scenario.space, errors, random, never_meant));
   if (selected.second && meant.truth.second)
     static_cast<FeatureSet&>(*selected.second) =
-        erring(scenario.space, *selected.second, *meant.truth.second, errors, random, never_meant);
+        Erring(scenario.space, errors, random, never_meant)(*selected.second, *meant.truth.second);
   return selected;
 }
 

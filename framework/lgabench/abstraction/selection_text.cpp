@@ -21,12 +21,38 @@ std::string which_of(const FeatureSet& set, const FeatureSpace& space) {
   return set.textures == space.textures ? text(set.object_types, space.object_types) : text(set, space);
 }
 
+std::string text(const std::vector<FeatureSet>& all, const FeatureSpace& space) {
+  std::vector<std::string> sets;
+  for (const FeatureSet& set : all) sets.push_back(text(set, space));
+  return fmt::format("{}", fmt::join(sets, " or "));
+}
+
+// "2 of apple; any, of the same texture, no two of one object type".
+std::string turn_text(const Turn& turn, const FeatureSpace& space) {
+  const auto names = [](const std::vector<Part>& parts) {
+    std::vector<std::string> words;
+    for (const Part part : parts) words.emplace_back(part == Part::object_type ? "object type" : "texture");
+    return fmt::format("{}", fmt::join(words, " and "));
+  };
+  std::string words = (turn.take ? std::to_string(*turn.take) : "all") + " of " + text(turn.sets, space);
+  if (!turn.same.empty()) words += ", of the same " + names(turn.same);
+  if (!turn.different.empty()) words += ", no two of one " + names(turn.different);
+  return words;
+}
+
 }  // namespace
 
 std::string meaning_text(const Meaning& meaning, const FeatureSpace& space) {
-  std::vector<std::string> sets;
-  for (const FeatureSet& set : meaning.sets) sets.push_back(text(set, space));
-  const std::string all = fmt::format("{}", fmt::join(sets, " or "));
+  if (!meaning.turns.empty()) {
+    std::string words;
+    for (const Turn& turn : meaning.turns)
+      words += (words.empty()          ? ""
+                : turn.only_if_nothing ? ", or if there is nothing "
+                                       : ", then ") +
+               turn_text(turn, space);
+    return words;
+  }
+  const std::string all = text(meaning.sets, space);
   if (!meaning.which) return all;
   const Which& which = *meaning.which;
   const auto one = [&](const char* words) { return fmt::format("{}, the one {}", all, words); };

@@ -138,7 +138,7 @@ Meaning meaning_of(const PersonRule& rule, const FeatureSpace& space) {
 }
 
 std::optional<PersonRule> rule_of(const Meaning& meaning, const FeatureSpace& space) {
-  if (meaning.sets.size() != 1) return std::nullopt;
+  if (meaning.sets.size() != 1 || !meaning.turns.empty()) return std::nullopt;
   PersonRule rule{numbers_of(meaning.sets.front().object_types, space.object_types),
                   numbers_of(meaning.sets.front().textures, space.textures),
                   {},

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <tuple>
+#include <utility>
 
 #include <lgabench/core/contains.hpp>
 #include <lgabench/host/messages.hpp>
@@ -28,11 +29,12 @@ std::vector<std::string> in_order(const std::vector<std::string>& names, const s
 }
 
 Selection in_order(Selection selection, const FeatureSpace& space) {
-  const auto sort = [&space](FeatureSet& set) {
-    set = {in_order(set.object_types, space.object_types), in_order(set.textures, space.textures)};
+  const auto sorted = [&space](const FeatureSet& set) {
+    return FeatureSet{in_order(set.object_types, space.object_types), in_order(set.textures, space.textures)};
   };
-  for (FeatureSet& set : selection.target.sets) sort(set);
-  if (selection.second) sort(*selection.second);
+  selection.target =
+      with_each_set(std::move(selection.target), [&](const FeatureSet& set, std::size_t) { return sorted(set); });
+  if (selection.second) static_cast<FeatureSet&>(*selection.second) = sorted(*selection.second);
   return selection;
 }
 

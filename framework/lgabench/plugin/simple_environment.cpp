@@ -42,10 +42,11 @@ std::shared_ptr<const SceneContent> SimpleEnvironment::read_content(const Scenar
                                                                     const JsonReader* /*scenes*/,
                                                                     bool /*training*/) const {
   for (const ScenarioCommand& command : scenario.commands)
-    if (command.truth.target.which)
+    if (command.truth.target.which || !command.truth.target.turns.empty())
       file.at("commands")
-          .fail(
-              fmt::format("sets of objects alone, since environment {} does not say which of several is meant", id()));
+          .fail(fmt::format(
+              "sets of objects alone, since environment {} does not say which of several is meant, or in which order",
+              id()));
   return std::make_shared<SceneContent>();
 }
 

@@ -66,7 +66,8 @@ void print_info(const Scenario& scenario) {
   for (const ScenarioCommand& command : scenario.commands) {
     to_stdout("  command     {}{}\n", command.utterance, command.seen ? "" : "  (not demonstrated)");
     for (const FeatureSet& set : command.truth.target.sets) print_set("target", set);
-    if (command.truth.target.which) to_stdout("  in words    {}\n", selection_text(command.truth, scenario.space));
+    if (command.truth.target.which || !command.truth.target.turns.empty())
+      to_stdout("  in words    {}\n", selection_text(command.truth, scenario.space));
     if (command.truth.second) print_set(command.truth.second->role.c_str(), *command.truth.second);
   }
   to_stdout("  answers     {}{}\n", scenario.recorded,

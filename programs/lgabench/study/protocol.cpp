@@ -89,6 +89,7 @@ Item practice_item(const JsonReader& reader, bool meanings) {
   item.proposal = read_distribution(reader.at("proposal"), item.space, task.second);
   if (!meanings && !item.proposal.target.is_product())
     reader.at("proposal").fail("one set, or \"meanings\": true in the protocol");
+  if (!item.proposal.target.turns.empty()) reader.at("proposal").at("target").fail("a meaning without turns");
   item.proposed_by = words(reader, "proposed_by");
   if (reader.has("hint")) item.hint = reader.at("hint").string();
   return item;
