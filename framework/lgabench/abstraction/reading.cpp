@@ -117,9 +117,9 @@ ReadPicture reading_of(const Scenario& scenario, const Reading& reading, std::sh
   return [space = scenario.space, empty, perceiver, whitens, finds](const Observation& seen, const Scene& scene) {
     Observation read{seen.size, seen.rgb, seen.ids, {}};
     if (finds)
-      read = library().segments(
-          std::move(read), *empty, whitens,
-          RandomStream(fmt::format("segments/{}/{}/{}/{}", scene.scenario, scene.layout, scene.seed, scene.index)));
+      read = library().segments(std::move(read), *empty, whitens,
+                                RandomStream(fmt::format("segments/{}/{}/{}/{}", scene.scenario, scene.layout,
+                                                         scene.seed, scene.drawn_as())));
     if (perceiver)
       read = perceiver->read(std::move(read), space);
     else

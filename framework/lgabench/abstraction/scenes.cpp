@@ -191,7 +191,7 @@ Perception perception_of(const Scenario& scenario, const Arm& arm, std::optional
                                                                            int step) {
     const auto stream = [&](const char* of) {
       return RandomStream(fmt::format("{}/{}/{}/{}{}/{}{}", of, scene.scenario, scene.layout, scene.seed, of_seed,
-                                      scene.index, later_stream(step)));
+                                      scene.drawn_as(), later_stream(step)));
     };
     Observation perceived = imperfect_textualization(perceive ? perceive(seen, stream("perception")) : seen,
                                                      scenario.space, noise, stream("textualization"));

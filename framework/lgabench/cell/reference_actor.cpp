@@ -35,7 +35,7 @@ Instances visible(const Given& given) {
 
 // One of them, drawn from the row's stream.
 Instance drawn(const Instances& some, const std::string& row, const Scene& scene) {
-  RandomStream stream(fmt::format("{}/{}", row, hex(scene.hash())));
+  RandomStream stream(fmt::format("{}/{}", row, hex(scene.shared_hash())));
   return some[stream.below(static_cast<std::uint32_t>(some.size()))];
 }
 

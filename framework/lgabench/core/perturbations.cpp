@@ -266,7 +266,7 @@ std::string arm_of(const Perturbation& perturbation) {
 RandomStream perturbation_stream(const std::string& axis, const Scene& scene,
                                  std::optional<std::uint64_t> training_seed, int step) {
   return RandomStream(fmt::format("perturbation/{}/{}/{}/{}{}/{}{}", axis, scene.scenario, scene.layout, scene.seed,
-                                  own_stream(training_seed), scene.index, later_stream(step)));
+                                  own_stream(training_seed), scene.drawn_as(), later_stream(step)));
 }
 
 }  // namespace lgabench

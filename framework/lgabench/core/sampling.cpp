@@ -20,12 +20,16 @@ Scene without_objects(const Scenario& scenario, const SceneRequest& request, int
   return scene;
 }
 
-std::string stream_name(const Scenario& scenario, const SceneRequest& request, int index) {
-  return fmt::format("scene/{}/{}/{}/{}{}/{}/", scenario.id, request.layout, request.split, request.seed,
+std::string stream_name(const std::string& scenario, const SceneRequest& request, int index) {
+  return fmt::format("scene/{}/{}/{}/{}{}/{}/", scenario, request.layout, request.split, request.seed,
                      own_stream(request.training_seed), index);
 }
 
 Streams streams_of(const Scenario& scenario, const SceneRequest& request, int index) {
+  return streams_of(scenario.id, request, index);
+}
+
+Streams streams_of(const std::string& scenario, const SceneRequest& request, int index) {
   const std::string scene = stream_name(scenario, request, index);
   return [scene](const std::string& purpose) { return RandomStream(scene + purpose); };
 }

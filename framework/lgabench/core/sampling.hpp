@@ -18,9 +18,11 @@ Scene without_objects(const Scenario& scenario, const SceneRequest& request, int
 using Streams = std::function<RandomStream(const std::string& purpose)>;
 
 /// What the names of a scene's streams begin with.
-std::string stream_name(const Scenario& scenario, const SceneRequest& request, int index);
+std::string stream_name(const std::string& scenario, const SceneRequest& request, int index);
 /// The streams of scene number `index`. The arm is no part of them: arms are compared scene by scene.
 Streams streams_of(const Scenario& scenario, const SceneRequest& request, int index);
+/// The same under another scenario's id: scenes of several scenarios that are to be one.
+Streams streams_of(const std::string& scenario, const SceneRequest& request, int index);
 
 /// Any of them, with equal odds. @pre there is one.
 const std::string& any_of(const std::vector<std::string>& names, RandomStream& random);

@@ -31,6 +31,7 @@ Json to_json(const Scene& scene) {
   if (scene.mass != 1) json["mass"] = scene.mass;
   if (!scene.own.is_null()) json["own"] = scene.own;
   if (scene.errand) json["errand"] = to_json(*scene.errand);
+  if (scene.pair) json["pair"] = *scene.pair;
   return json;
 }
 
@@ -44,6 +45,17 @@ std::vector<bool> meant_at_first(const Scene& scene) {
   for (std::size_t i = 0; i < on_table.size(); ++i)
     meant.push_back(scene.errand ? contains(next, on_table[i]) : scene.objects[i].role == role::target);
   return meant;
+}
+
+std::uint64_t Scene::shared_hash() const {
+  if (!pair) return hash();
+  Scene shared = *this;
+  shared.scenario.clear();
+  shared.errand.reset();
+  shared.index = shared.command = 0;
+  for (SceneObject& object : shared.objects)
+    if (object.role == role::target) object.role = role::distractor;
+  return shared.hash();
 }
 
 const SceneObject* Scene::find(const Role& role) const {

@@ -45,9 +45,16 @@ struct Scene {
   /// What the scene is judged by where its command says how objects are used: a judge never sees commands. Written and
   /// hashed only where there is one.
   std::optional<Meaning> errand = {};
+  /// Scenes of one pair have the same number here. They differ in command, roles and errand alone, and all random
+  /// streams take this number in place of `index`. Written and hashed only where there is one.
+  std::optional<int> pair = {};
 
   /// Stable over hosts and versions; covers every field.
   std::uint64_t hash() const;
+  /// The same for both scenes of a pair, whatever scenarios give them; else hash().
+  std::uint64_t shared_hash() const;
+  /// The number that random streams take.
+  int drawn_as() const { return pair.value_or(index); }
   /// First object with the role, or nullptr. The Scene owns it. Several objects may have one role: any of several
   /// targets is right.
   const SceneObject* find(const Role& role) const;

@@ -255,7 +255,7 @@ class PythonEnvironment : public SimpleEnvironment {
     };
     const Json asked{{"type", "sample"},
                      {"scenario", scenario.json},
-                     {"stream", stream_name(scenario, request, index) + id()},
+                     {"stream", stream_name(scenario.id, request, index) + id()},
                      {"request",
                       {{"task", scenario.task},
                        {"layout", request.layout},
