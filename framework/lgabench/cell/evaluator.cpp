@@ -1,8 +1,11 @@
 #include <lgabench/cell/evaluator.hpp>
 
-#include <fmt/format.h>
-
+#include <algorithm>
+#include <array>
+#include <iterator>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -11,22 +14,59 @@
 namespace lgabench {
 namespace {
 
+// An object's name in what an actor was given: of what covers most of the object there, whose name it has if nothing
+// does.
+Named name_given(const Instance& object, const Observation& seen, const Observation& given) {
+  std::array<int, 256> common{};
+  for (std::size_t i = 0; i < seen.ids.size(); ++i)
+    if (seen.ids[i] == object.id) ++common[given.ids[i]];
+  const Instance* best = nullptr;
+  for (const Instance& one : given.instances)
+    if (common[one.id] > (best ? common[best->id] : 0)) best = &one;
+  return best ? Named{best->object_type, best->texture} : Named{object.object_type, object.texture};
+}
+
+// Notes what a step brought as the actor knew it: of what was seen and is no longer, that which has its name.
+void note_brought(const Observation& seen, const Observation& given, const Observation& now,
+                  std::vector<Named>& brought) {
+  std::vector<Instance> gone;
+  const auto is_there = [&now](const Instance& one) {
+    return std::any_of(now.instances.begin(), now.instances.end(), [&](const Instance& o) { return o.id == one.id; });
+  };
+  std::copy_if(seen.instances.begin(), seen.instances.end(), std::back_inserter(gone),
+               [&](const Instance& one) { return !is_there(one); });
+  for (std::size_t i = brought.size(); i < now.brought.size(); ++i) {
+    const Named& name = now.brought[i];
+    const auto one = std::find_if(gone.begin(), gone.end(), [&](const Instance& o) {
+      return Named{o.object_type, o.texture} == name;
+    });
+    brought.push_back(one == gone.end() ? name : name_given(*one, seen, given));
+    if (one != gone.end()) gone.erase(one);
+  }
+}
+
 Episode play(Environment& environment, const TestScene& test, const Actor& actor) {
   const Scene& scene = test.scene;
   Episode episode{scene.arm, scene.index, scene.command, hex(scene.hash()), failure::abstraction_empty};
   if (test.abstraction_empty) return episode;
   Observation observation = environment.reset(scene);
   if (test.view != View()) observation = environment.look(test.view);
+  std::vector<Named> brought;  // as the actor was told it when it was taken
   for (int step = 0;; ++step) {
-    if (test.perception) observation = test.perception(observation, scene, step);  // a plugin's fault is no method's
+    Observation perceived = observation;
+    if (test.perception) perceived = test.perception(observation, scene, step);  // a plugin's fault is no method's
+    perceived.brought = brought;
     try {
-      const Move move = actor.act(environment, scene, observation, step);
+      Observation given;
+      const Move move =
+          actor.act(environment, scene, perceived, step, environment.most_steps() == 1 ? nullptr : &given);
       StepResult result = environment.step(move.action);  // refuses one that is not executable()
       episode.failure = result.failure;
       if (episode.taken == 0) episode.taken = result.taken;
       episode.add(move.action.empty() ? Action() : as_stored(environment.action_space(), move.action));
       episode.input_seen = step == 0 || move.input_seen == false ? move.input_seen : episode.input_seen;
       if (environment.most_steps() == 1 || result.terminated || result.truncated) return episode;
+      note_brought(observation, given, result.observation, brought);
       observation = std::move(result.observation);
     } catch (const MethodError& e) {
       const std::string at = environment.most_steps() == 1 ? "" : fmt::format(", step {}", step + 1);
@@ -44,7 +84,8 @@ Actor::Told told_by_command(const std::vector<Instruction>& instructions) {
 
 }  // namespace
 
-Move Actor::act(const Environment& environment, const Scene& scene, const Observation& seen, int step) const {
+Move Actor::act(const Environment& environment, const Scene& scene, const Observation& seen, int step,
+                Observation* saw) const {
   Given given{scene, seen};
   given.step = step;
   if (told) given.told = told(scene);
@@ -52,6 +93,7 @@ Move Actor::act(const Environment& environment, const Scene& scene, const Observ
   if (recorder) recorder->given(environment, given);
   const Move move = choose(environment, given);
   if (recorder) recorder->acted();
+  if (saw) *saw = given.observation();
   return move;
 }
 

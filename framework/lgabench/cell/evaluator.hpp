@@ -54,8 +54,9 @@ struct Actor {
   ReadPicture reads = nullptr;   // gives what it is given in place of what is seen; null: that
   Recorder* recorder = nullptr;  // null: nobody takes note
 
-  /// @throws as choose()
-  Move act(const Environment& environment, const Scene& scene, const Observation& seen, int step = 0) const;
+  /// `saw`: gets what the actor was given. @throws as choose()
+  Move act(const Environment& environment, const Scene& scene, const Observation& seen, int step = 0,
+           Observation* saw = nullptr) const;
 };
 
 /// A policy as an actor: it sees the observation and what it is told, nothing else. What it throws, an InputError

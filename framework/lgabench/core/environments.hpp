@@ -89,7 +89,8 @@ class EnvironmentType {
   virtual const std::vector<std::string>& spaces() const = 0;
   /// None, as by default, where contact sheets show its scenes alone.
   virtual std::optional<Showcase> showcase() const { return std::nullopt; }
-  /// Every word that step() may give for a failure but the framework's own, in the order in which reports list them.
+  /// Every word that step() may give for a failure, in the order in which reports list them: but the framework's own,
+  /// and those that only tasks of several steps have (TaskInfo::failures), which reports list where they were found.
   virtual const std::vector<std::string>& failures() const = 0;
 
   /// What the numbers of the environment's actions mean.

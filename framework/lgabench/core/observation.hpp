@@ -44,7 +44,9 @@ struct Observation {
   /// What the picture need not show, such as where the agent is: numbers of EnvironmentType::state_of(). Empty where
   /// the task has none.
   std::vector<double> state = {};
-  std::vector<Named> brought = {};  // in episodes of several steps: what was taken so far, in order
+  /// In episodes of several steps: what was brought so far, in order. An environment gives true names, a policy gets
+  /// those that it was told when it took them.
+  std::vector<Named> brought = {};
 };
 
 /// Brightness of a colour in an object's shadow, in 1/256 of its brightness in the light.

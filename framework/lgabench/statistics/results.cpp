@@ -27,14 +27,18 @@ namespace {
 // A name or a message as tables, pages and terminals may show it: it comes from a plugin, or from somebody else's run.
 std::string shown(const JsonReader& text) { return one_line(text.string()); }
 
-// The failures of an environment that is a plugin's, and there; else none.
-std::set<std::string> words_of_plugin(const std::string& environment) {
-  if (contains(environment_ids(), environment)) return {};
+// The failures of an environment beside those that all runs know: of tasks of several steps and, of one that is a
+// plugin's, all. None where it is not there.
+std::set<std::string> further_words(const std::string& environment) {
   const EnvironmentType* const type = environment_if_there(environment);
   if (!type) return {};
-  std::set<std::string> words(type->failures().begin(), type->failures().end());
-  for (const TaskInfo& task : type->tasks())
-    if (task.most_steps > 1) words.insert(failure::goes_on);
+  std::set<std::string> words;
+  if (!contains(environment_ids(), environment)) words.insert(type->failures().begin(), type->failures().end());
+  for (const TaskInfo& task : type->tasks()) {
+    if (task.most_steps == 1) continue;
+    words.insert(failure::goes_on);
+    words.insert(task.failures.begin(), task.failures.end());
+  }
   return words;
 }
 
@@ -45,7 +49,7 @@ bool is_word(const std::string& text) {
 
 void read_episodes(const fs::path& file, CellResult& cell) {
   std::map<std::string, std::map<int, Episode>> played;
-  const std::set<std::string> own = words_of_plugin(cell.environment);
+  const std::set<std::string> own = further_words(cell.environment);
   const std::vector<std::string> words = failure_words(own);
   const bool any_word = own.empty() && cell.configuration.has_plugin_environment();  // it is not there to ask
   int line = 0;
