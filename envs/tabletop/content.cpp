@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include <tabletop/cue.hpp>
+#include <tabletop/errand_scenes.hpp>
 #include <tabletop/rivals.hpp>
 #include <tabletop/task.hpp>
 
@@ -146,6 +147,30 @@ Content read_persons_content(const Scenario& scenario, const JsonReader& file, c
   return content;
 }
 
+// What is brought in several steps says of its scenes what a pair of commands needs, and nothing else.
+Content read_errands_content(const Scenario& scenario, const JsonReader& file, const JsonReader* scenes,
+                             bool training) {
+  if (scenario.as_method_asks) file.at("task").fail("\"as_method_asks\": false in \"train\" beside it");
+  if (!file.has("may_stop") || !file.at("may_stop").boolean()) file.at("task").fail("\"may_stop\": true beside it");
+  const Task& task = find_task(scenario.task);
+  const auto refuse = [&task](const JsonReader& reader, const std::vector<std::string>& members,
+                              const std::vector<std::string>& known) {
+    for (const std::string& member : members)
+      if (!contains(known, member) && reader.has(member))
+        reader.at(member).fail(fmt::format("no such member in a scenario of {}", task.id()));
+  };
+  refuse(file, scenario_members(task), task.scenario_members());
+  const std::vector<std::string> of_scenes = training ? std::vector<std::string>() : task.scene_members();
+  std::vector<std::string> no_scenes = scene_members(task);
+  no_scenes.emplace_back("perturbation");
+  if (scenes) refuse(*scenes, no_scenes, of_scenes);
+  Content content;
+  content.errands = read_errands(scenario, file, scenes, training);
+  const int others = objects_of(*content.errands) - 1;
+  content.distractors = {others, others};
+  return content;
+}
+
 // `decoys`: of the scenario, for the scenes that ask for them.
 void read_decoys(const JsonReader& file, const JsonReader& scenes, const std::vector<FeatureSet>& decoys,
                  Content& content) {
@@ -193,6 +218,7 @@ std::vector<std::string> scene_members(const Task& task) {
 }
 
 Content read_content(const Scenario& scenario, const JsonReader& file, const JsonReader* scenes, bool training) {
+  if (find_task(scenario.task).most_steps() > 1) return read_errands_content(scenario, file, scenes, training);
   if (file.has("persons") && file.at("persons").boolean()) return read_persons_content(scenario, file, scenes);
   Content content;
   if (training) content.distractors = {1, 1};

@@ -18,13 +18,6 @@ namespace {
 using Rule = Which::Rule;
 constexpr double column_margin_m = .08, distance_margin_m = .10;
 
-// A second pallet would be a second goal.
-bool fits(const std::string& type, double widest_m) {
-  if (type == goal_type) return false;
-  const Vec2 size = common::object_model(type).size_m;
-  return std::max(size.x, size.y) <= widest_m + 1e-9;
-}
-
 struct Draw {
   const Scenario& scenario;
   const Content& content;
@@ -58,7 +51,7 @@ struct Draw {
       const FeatureSet& set = sets[random.below(static_cast<std::uint32_t>(sets.size()))];
       if (set.empty()) continue;
       const Features one{any_of(set.object_types, random), any_of(set.textures, random)};
-      if (fits(one.type, widest_m) && may_be(one)) return one;
+      if (can_show(one.type, widest_m) && may_be(one)) return one;
     }
     return std::nullopt;
   }
@@ -106,7 +99,7 @@ std::optional<std::vector<Features>> sample_alike(Draw& draw, const std::vector<
   for (int i = 0; i < fresh; ++i) others.push_back(distractor());
   const auto may_be = [&](const Features& one) {
     const bool another_near_miss = draw.truth.which && draw.near_miss(one);  // of which a rule would have to choose
-    return draw.plain(one) && !another_near_miss && fits(one.type, widest_m);
+    return draw.plain(one) && !another_near_miss && can_show(one.type, widest_m);
   };
   return sharing_alike(there, others, draw.content.distractors, may_be, draw.random);
 }

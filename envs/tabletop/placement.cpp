@@ -65,6 +65,12 @@ bool place_others(const Room& room_of, int tries, std::vector<SceneObject>& obje
 
 const ObjectModel& model_of(const SceneObject& object) { return object_model(object.object_type, object.scale); }
 
+bool can_show(const std::string& type, double widest_m) {
+  if (type == goal_type) return false;
+  const Vec2 size = object_model(type).size_m;
+  return std::max(size.x, size.y) <= widest_m + 1e-9;
+}
+
 void place_on_cells(const Layout& layout, std::vector<SceneObject>& objects, RandomStream random) {
   const Vec2 target = layout.target_places[random.below(static_cast<std::uint32_t>(layout.target_places.size()))];
   std::vector<Vec2> free;

@@ -23,10 +23,15 @@ namespace role {
 using namespace lgabench::role;
 /// An object that belongs to what a command says, and is not the one that it means.
 inline constexpr const char* not_meant = "not_meant";
+/// An object of an errand that stands there after the first take.
+inline constexpr const char* later = "later";
 }  // namespace role
 
 /// The model of an object of a scene.
 const ObjectModel& model_of(const SceneObject& object);
+
+/// Whether a scene may hold objects of that type beside its goal: none wider than that, and no second goal.
+bool can_show(const std::string& type, double widest_m);
 
 /// Where objects of a task may stand (docs/protocol.md, section 3). Without places: anywhere, at any yaw.
 struct Layout {

@@ -9,6 +9,7 @@
 #include <common/objects.hpp>
 #include <lgabench/core/sampling.hpp>
 #include <tabletop/cue.hpp>
+#include <tabletop/errand_scenes.hpp>
 #include <tabletop/meant.hpp>
 #include <tabletop/near_misses.hpp>
 #include <tabletop/rivals.hpp>
@@ -18,13 +19,6 @@
 
 namespace lgabench::tabletop {
 namespace {
-
-// A second pallet would be a second goal.
-bool can_show(const std::string& type, double widest_m) {
-  if (type == goal_type) return false;
-  const Vec2 size = object_model(type).size_m;
-  return std::max(size.x, size.y) <= widest_m + 1e-9;
-}
 
 // Uniform over what of the distribution can be shown. `whom` is named in errors.
 Features sample_features(const Scenario& scenario, const Layout& layout, const FeatureSet& distribution,
@@ -428,6 +422,7 @@ std::vector<Features> members_of(const Scenario& scenario, const std::string& la
 }
 
 Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int index) {
+  if (content_of(scenario, request.arm).errands) return errand_scene(scenario, request, index);
   Scene scene = without_objects(scenario, request, index);
   const auto command = static_cast<std::size_t>(scene.command);
   const bool training = request.arm == "train";

@@ -11,7 +11,10 @@
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
+#include <lgabench/core/hash.hpp>
+#include <lgabench/core/random.hpp>
 #include <tabletop/content.hpp>
+#include <tabletop/errand.hpp>
 #include <tabletop/judge.hpp>
 #include <tabletop/near_misses.hpp>
 #include <tabletop/raster.hpp>
@@ -51,7 +54,7 @@ class Tabletop final : public Environment {
   Observation reset(const Scene& scene) override {
     std::vector<VisibleObject> objects = visible_objects(scene);
     std::vector<BodyPlacement> placements;
-    std::vector<bool> fixed;
+    std::vector<bool> fixed, there;
     for (std::size_t i = 0; i < objects.size(); ++i) {
       fixed.push_back(scene.objects[i].role == role::goal);
       const auto model =
@@ -63,13 +66,19 @@ class Tabletop final : public Environment {
                         "among the environment's",
                         scene.scenario, scene.index, objects[i].object_type, scene.objects[i].role, objects[i].scale,
                         scene.friction, scene.mass));
-      placements.push_back({model->second, objects[i].pose});
+      there.push_back(scene.objects[i].role != role::later);
+      placements.push_back({model->second, there[i] ? objects[i].pose : beside_the_table(i)});
     }
     world_->reset(placements);
     task_ = &find_task(scene.task);
     scene_ = scene;
     objects_ = std::move(objects);
+    placements_ = std::move(placements);
     fixed_ = std::move(fixed);
+    there_ = std::move(there);
+    errand_.reset();
+    if (scene_.errand) errand_.emplace(scene_);
+    steps_ = 0;
     went_wrong_ = failure::none;
     return look({});
   }
@@ -82,6 +91,7 @@ class Tabletop final : public Environment {
   void show_shadows(bool on) override { shadows_ = on; }
 
   StepResult step(const Action& action) override {
+    if (errand_) return errand_step(action);
     const TwoPoses carried_out = executable(two_poses(), action);
     const std::vector<Pose> before = poses();
     Motion motion = task_->carry_out(scene_, {*world_, fixed_}, carried_out);
@@ -102,6 +112,7 @@ class Tabletop final : public Environment {
   }
 
   Rejudged judged_again(const JudgeLimits& limits) const override {
+    if (errand_) throw InputError("environment: the judge of errands has no limits to change");
     const std::vector<Pose> reached = poses();
     return {judge(scene_, reached, last_, limits), off_m(scene_, reached)};
   }
@@ -116,10 +127,23 @@ class Tabletop final : public Environment {
   Observation observe() override {
     const std::vector<Pose> now = poses();
     for (std::size_t i = 0; i < now.size(); ++i) objects_[i].pose = now[i];
-    return renderer_.render(objects_, task_->ground(), view_, shadows_);
+    if (!errand_) return renderer_.render(objects_, task_->ground(), view_, shadows_);
+    std::vector<VisibleObject> in_view;
+    for (std::size_t i = 0; i < now.size(); ++i)
+      if (there_[i]) in_view.push_back(objects_[i]);
+    Observation seen = renderer_.render(in_view, task_->ground(), view_, shadows_);
+    seen.brought = errand_->brought();
+    return seen;
   }
 
-  Action expert_action() const override { return expert_action_for(expect(scene_, role::target).instance_id); }
+  Action expert_action() const override {
+    if (!errand_) return expert_action_for(expect(scene_, role::target).instance_id);
+    const std::vector<std::size_t> wanted = errand_->wanted();
+    if (wanted.empty() || errand_->is_done()) return {};
+    RandomStream stream(fmt::format("oracle/{}/{}", hex(scene_.shared_hash()), steps_));
+    const std::size_t one = wanted[stream.below(static_cast<std::uint32_t>(wanted.size()))];
+    return expert_action_for(scene_.objects[one].instance_id);
+  }
 
   Action expert_action_for(std::uint8_t instance_id) const override {
     const auto& objects = scene_.objects;
@@ -130,6 +154,88 @@ class Tabletop final : public Environment {
   }
 
  private:
+  // Out of every picture, each by itself.
+  static Pose beside_the_table(std::size_t object) {
+    constexpr double away_m = 10;
+    return {{away_m + static_cast<double>(object), 0, 0}, {}};
+  }
+
+  StepResult errand_step(const Action& action) {
+    StepResult result;
+    ++steps_;
+    if (action.empty()) {
+      result.failure = errand_->ended();
+    } else {
+      const TwoPoses carried_out = executable(two_poses(), action);
+      const std::vector<Pose> before = poses();
+      const Errand began = *errand_;
+      const Motion motion = task_->carry_out(scene_, {*world_, fixed_}, carried_out);
+      const std::vector<Pose> reached = poses();
+      result.gaps = errand_gaps(scene_, began, carried_out, before, reached, motion);
+      if (motion.taken != no_body) result.taken = scene_.objects[static_cast<std::size_t>(motion.taken)].instance_id;
+      result.failure = errand_->moved(reached, motion);
+      while (result.failure == failure::goes_on && person_comes()) result.failure = errand_->moved(poses(), settled());
+    }
+    result.observation = observe();
+    result.terminated = result.failure != failure::goes_on;
+    result.truncated = result.failure == failure::truncated;
+    result.is_success = result.failure == failure::none;
+    result.recoverable = !result.terminated;
+    return result;
+  }
+
+  // Takes away what the errand no longer has on the table, and puts down what it has now; false where nothing is to be
+  // done. All else stays as it lies.
+  bool person_comes() {
+    const std::vector<Pose> now = poses();
+    std::vector<std::size_t> comes;
+    bool goes = false;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      placements_[i].pose = now[i];
+      if (there_[i] == errand_->on_table(i)) continue;
+      there_[i] = !there_[i];
+      if (there_[i]) {
+        comes.push_back(i);
+      } else {
+        placements_[i].pose = beside_the_table(i);
+        goes = true;
+      }
+    }
+    for (const std::size_t i : comes) placements_[i].pose = free_place(i);
+    if (!goes && comes.empty()) return false;
+    world_->reset(placements_);
+    return true;
+  }
+
+  Motion settled() {
+    const Bodies bodies{*world_, fixed_};
+    Clock clock(*world_);
+    return {no_body, settle(bodies, clock), failure::none};
+  }
+
+  // The object's own place or, where something was pushed there, the nearest that is free.
+  Pose free_place(std::size_t object) const {
+    constexpr double margin_m = .002, spacing_m = .01, farthest_m = .5;
+    constexpr int directions = 16;
+    std::vector<SceneObject> all;
+    for (std::size_t i = 0; i < placements_.size(); ++i) {
+      if (i == object || !there_[i]) continue;
+      const auto& [position_m, rotation] = placements_[i].pose;
+      all.push_back(scene_.objects[i]);
+      all.back().position_m = {position_m.x, position_m.y};
+      all.back().yaw_rad = yaw_of(rotation);
+    }
+    const SceneObject& own = scene_.objects[object];
+    all.push_back(own);
+    for (double away_m = 0; away_m < farthest_m; away_m += spacing_m)
+      for (int i = 0; i < (away_m > 0 ? directions : 1); ++i) {
+        all.back().position_m = own.position_m + rotated({away_m, 0}, 2 * pi * i / directions);
+        if (!has_room({}, all, all.size() - 1, margin_m)) continue;
+        return {{all.back().position_m.x, all.back().position_m.y, 0}, from_yaw(own.yaw_rad)};
+      }
+    throw EngineError(fmt::format("scene {} of {}: no room for the object that comes later", scene_.index, scene_.arm));
+  }
+
   // Both places as if the picture were the usual view's; an object's height does not show from straight above.
   TwoPoses misread(TwoPoses action) const {
     if (view_ == View()) return action;  // to the bit
@@ -154,7 +260,10 @@ class Tabletop final : public Environment {
   const Task* task_ = nullptr;  // the scene's
   Scene scene_;
   std::vector<VisibleObject> objects_;  // in the scene's order, at their poses now
-  std::vector<bool> fixed_;
+  std::vector<BodyPlacement> placements_;
+  std::vector<bool> fixed_, there_;  // there_: on the table, where a person takes things away or brings one
+  std::optional<Errand> errand_;     // the scene's
+  int steps_ = 0;                    // of the errand
   View view_;
   bool shadows_ = false;
   Motion last_;                         // what step() carried out
@@ -187,13 +296,14 @@ class TabletopType final : public EnvironmentType {
   TabletopType() {
     failures_ = {failure::missed_object, failure::wrong_object};
     for (const Task* task : tabletop::tasks()) {
-      most_instances_ = std::max(most_instances_, task->most_distractors() + 2);  // with target and goal
-      TaskInfo info{task->id(), {}, std::nullopt, task->failures(), task->example()};
+      TaskInfo info{task->id(), {}, std::nullopt, task->failures(), task->example(), task->most_steps()};
       for (const Layout& layout : task->layouts()) info.layouts.push_back(layout.id);
       if (const auto second = task->second()) info.second = *second;
+      tasks_.push_back(info);
+      if (info.most_steps > 1) continue;
+      most_instances_ = std::max(most_instances_, task->most_distractors() + 2);  // with target and goal
       for (const std::string& word : info.failures)
         if (!contains(failures_, word)) failures_.push_back(word);
-      tasks_.push_back(std::move(info));
     }
     failures_.emplace_back(failure::left_workspace);
     failures_.emplace_back(failure::not_meant);
@@ -208,7 +318,9 @@ class TabletopType final : public EnvironmentType {
   const std::vector<std::string>& failures() const override { return failures_; }
   const ActionSpace& action_space() const override { return two_poses(); }
   PictureSize picture_size() const override { return Workspace::picture; }
-  int most_instances(const TaskInfo&) const override { return most_instances_; }
+  int most_instances(const TaskInfo& task) const override {
+    return task.most_steps == 1 ? most_instances_ : find_task(task.id).most_distractors() + 2;
+  }
   // The corner of the first pixel is half a pixel before its centre.
   Vec2 in_picture(Vec3 point_m) const override {
     const Vec2 at = tabletop::in_picture(point_m.x, point_m.y);
@@ -240,7 +352,9 @@ class TabletopType final : public EnvironmentType {
     constexpr int usual = 2;
     const Content& control = content_of(*scenario.tests.front().scenes);
     const int most = find_task(scenario.task).most_distractors();
-    if (control.by_meaning || control.persons || control.cue || !control.choice.empty() || most <= usual) return 0;
+    if (control.by_meaning || control.persons || control.errands || control.cue || !control.choice.empty() ||
+        most <= usual)
+      return 0;
     return std::min(most_added, std::max(0, most - control.distractors.second));
   }
   Scene with_distractors(const Scenario& scenario, Scene scene, int count, bool near_miss,

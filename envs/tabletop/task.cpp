@@ -18,6 +18,12 @@ auto named(const char* what, const List& list, const std::string& id, Id id_of) 
   throw InputError(none_named(what, id, known));
 }
 
+bool comes_later(const Scene& scene, std::uint8_t instance_id) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(), [instance_id](const SceneObject& object) {
+    return object.instance_id == instance_id && object.role == role::later;
+  });
+}
+
 }  // namespace
 
 void Task::place(const Layout& layout, const Content& content, std::vector<SceneObject>& objects,
@@ -42,7 +48,11 @@ const Task& find_task(const std::string& id) {
 
 Observation drawn(const Scene& scene, const View& view) {
   static thread_local Renderer renderer;
-  return renderer.render(visible_objects(scene), find_task(scene.task).ground(), view);
+  std::vector<VisibleObject> objects = visible_objects(scene);
+  objects.erase(std::remove_if(objects.begin(), objects.end(),
+                               [&](const VisibleObject& one) { return comes_later(scene, one.instance_id); }),
+                objects.end());
+  return renderer.render(objects, find_task(scene.task).ground(), view);
 }
 
 Layout find_layout(const Task& task, const std::string& id) {

@@ -27,6 +27,9 @@ struct Final {
   double yaw_rad;
 };
 
+/// How far from the goal's centre an object lies at most that counts as brought there.
+constexpr double placed_within_m = 0.1;
+
 /// One object, constant, for as long as the program runs. Whatever is not overridden is as in pick-and-place.
 class Task {
  public:
@@ -55,6 +58,8 @@ class Task {
                      const Streams& stream) const;
   /// What must stay free beside the target itself for its motion: seen from above.
   virtual std::vector<Polygon> room(const Layout& layout, const SceneObject& target) const;
+  /// TaskInfo::most_steps. More than one: scenes have an errand (errand.hpp).
+  virtual int most_steps() const { return 1; }
   /// How many distractors its scenes may have.
   virtual int most_distractors() const { return 2; }  // more do not fit beside the widest target
   /// What is painted on the table.
