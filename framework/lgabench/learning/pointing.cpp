@@ -33,7 +33,8 @@ class Pointing final : public Policy {
           ids.erase(std::remove(ids.begin(), ids.end(), one.instance.id), ids.end());
       return ids;
     };
-    std::vector<std::uint8_t> ids = without_places(grounded(instruction.selection.target, visible));
+    std::vector<std::uint8_t> ids =
+        without_places(grounded(instruction.selection.target, visible, observation.brought));
     if (ids.empty()) {
       for (const Placed& one : visible) ids.push_back(one.instance.id);
       ids = without_places(ids);
