@@ -14,9 +14,9 @@
 namespace lgabench {
 namespace {
 
-const FeatureSpace space{"s", {"apple", "bowl", "pallet", "pear"}, {"blue", "red"}};
-const FeatureSet apples{{"apple"}, space.textures}, bowls{{"bowl"}, space.textures},
-    fruit{{"apple", "pear"}, space.textures};
+const FeatureSpace told_space{"s", {"apple", "bowl", "pallet", "pear"}, {"blue", "red"}};
+const FeatureSet apples{{"apple"}, told_space.textures}, bowls{{"bowl"}, told_space.textures},
+    fruit{{"apple", "pear"}, told_space.textures};
 
 Turn all(const FeatureSet& set) { return {{set}, std::nullopt, {}, {}, false}; }
 Turn two(const FeatureSet& set, std::vector<Part> same, std::vector<Part> different = {}) {
@@ -75,21 +75,23 @@ TEST(Told, AMeaningWithoutTurnsDoesNotLookAtWhatWasBrought) {
 }
 
 TEST(Told, TurnsInWords) {
-  EXPECT_EQ(meaning_text(in_turns({all(apples), all(bowls)}), space), "all of apple; any, then all of bowl; any");
-  EXPECT_EQ(meaning_text(in_turns({two(fruit, {Part::object_type}, {Part::texture}), one_if_nothing(bowls)}), space),
-            "2 of apple, pear; any, of the same object type, no two of one texture, or if there is nothing 1 of bowl; "
-            "any");
+  EXPECT_EQ(meaning_text(in_turns({all(apples), all(bowls)}), told_space), "all of apple; any, then all of bowl; any");
+  EXPECT_EQ(
+      meaning_text(in_turns({two(fruit, {Part::object_type}, {Part::texture}), one_if_nothing(bowls)}), told_space),
+      "2 of apple, pear; any, of the same object type, no two of one texture, or if there is nothing 1 of bowl; "
+      "any");
   Turn either = two(apples, {});
   either.sets.push_back({{"bowl"}, {"red"}});
   either.different = {Part::object_type, Part::texture};
-  EXPECT_EQ(selection_text(told({either}), space),
+  EXPECT_EQ(selection_text(told({either}), told_space),
             "target: 2 of apple; any or bowl; red, no two of one object type and texture");
 }
 
 TEST(Told, AReplyMayHoldTurns) {
   const std::string turns = R"({"turns": [{"sets": [{"object_types": ["apple"], "textures": "ALL"}], "take": )";
-  EXPECT_EQ(meaning_in("First I think.\nFinal answer: " + turns + R"("all"}]})", space), in_turns({all(apples)}));
-  EXPECT_SAYS(message_of<MethodError>([&] { meaning_in("Final answer: " + turns + "0}]}", space); }), "/turns/0/take");
+  EXPECT_EQ(meaning_in("First I think.\nFinal answer: " + turns + R"("all"}]})", told_space), in_turns({all(apples)}));
+  EXPECT_SAYS(message_of<MethodError>([&] { meaning_in("Final answer: " + turns + "0}]}", told_space); }),
+              "/turns/0/take");
 }
 
 TEST(Told, APersonCorrectsObjectTypesAndHow) {
@@ -105,14 +107,14 @@ TEST(Told, APersonCorrectsObjectTypesAndHow) {
 Scenario scenario_of(const Selection& truth, const Json& json = {{"id", "test"}}) {
   Scenario scenario;
   scenario.id = "test";
-  scenario.space = space;
+  scenario.space = told_space;
   scenario.commands = {{"words", truth}};
   scenario.json = json;
   return scenario;
 }
 
 TEST(Told, ErrorsAreTheSameInEveryTurn) {
-  const Selection truth = told({all(fruit), two({{"bowl", "pear"}, space.textures}, {Part::texture})});
+  const Selection truth = told({all(fruit), two({{"bowl", "pear"}, told_space.textures}, {Part::texture})});
   const Scenario scenario = scenario_of(truth);
   EXPECT_EQ(why_no_selection_errors(scenario), "");
   int changed = 0;
@@ -146,7 +148,7 @@ TEST(Told, TheTruthIsCoveredByTheSameTurnsAlone) {
   const auto covers = [&](const Meaning& meaning) { return covers_truth({{"text", meaning, 1}}, scenario, 0); };
   EXPECT_TRUE(covers(in_turns({two(fruit, {Part::texture, Part::object_type})})));
   EXPECT_TRUE(
-      covers(in_turns({two({{"apple", "pear", "pallet"}, space.textures}, {Part::object_type, Part::texture})})));
+      covers(in_turns({two({{"apple", "pear", "pallet"}, told_space.textures}, {Part::object_type, Part::texture})})));
   EXPECT_FALSE(covers(in_turns({two(apples, {Part::object_type, Part::texture})})));
   EXPECT_FALSE(covers(in_turns({two(fruit, {Part::texture})})));
   EXPECT_FALSE(covers(in_turns({all(fruit)})));

@@ -31,9 +31,9 @@ constexpr std::array<std::string_view, 9> grid_lists{
     "methods", "scenarios", "layouts", "engines", "demonstrations", "seeds", "selection_errors", "names", "segments"};
 
 // A run to read from, which nobody writes into meanwhile.
-class Part {
+class RunPart {
  public:
-  explicit Part(const fs::path& path) : path_(path), record_(read_run_record(path)), programs_(record_.programs()) {
+  explicit RunPart(const fs::path& path) : path_(path), record_(read_run_record(path)), programs_(record_.programs()) {
     expect_plain_run(path);
     lock_ = Descriptor(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (lock_.fd < 0) throw InputError(fmt::format("{}: cannot be opened: {}", path.string(), std::strerror(errno)));
@@ -53,13 +53,13 @@ class Part {
   Descriptor lock_;
 };
 
-[[noreturn]] void refuse(const Part& first, const Part& other, const std::string& what) {
+[[noreturn]] void refuse(const RunPart& first, const RunPart& other, const std::string& what) {
   throw InputError(
       fmt::format("{} and {} are not parts of one run: {}", first.path().string(), other.path().string(), what));
 }
 
 // The programs that both name are the same; a part may lack another part's plugins.
-void expect_same_programs(const Part& first, const Part& other) {
+void expect_same_programs(const RunPart& first, const RunPart& other) {
   const std::string &version = first.record().version, &other_version = other.record().version;
   if (!same_cells(version, other_version))
     refuse(first, other, fmt::format("one is of lgabench {}, one of {}", version, other_version));
@@ -76,7 +76,7 @@ void unite(Json& all, const Json& more) {
 
 // What `all` is with the cells, plugins and settings of `more`: another method, seed or number of demonstrations, with
 // nothing else in the settings changed.
-void unite(RunRecord& all, const Part& first, const Part& part) {
+void unite(RunRecord& all, const RunPart& first, const RunPart& part) {
   RunRecord more = part.record();
   if (all.cells == more.cells) return;
   const std::string differs = difference(all, more);
@@ -106,7 +106,7 @@ void unite(RunRecord& all, const Part& first, const Part& part) {
 }
 
 // What status.json says of a cell that the run's own programs computed.
-Json build_of(const Part& part, const Cell& cell) {
+Json build_of(const RunPart& part, const Cell& cell) {
   Json build = part.record().build;
   if (!cell.needs_axes()) build.erase(perturbation_library);
   if (!cell.reading.needs_library()) build.erase(seeing_library);
@@ -128,7 +128,7 @@ struct Candidate {
   CellState state;
 };
 
-Candidate candidate(const Part& part, const std::string& key) {
+Candidate candidate(const RunPart& part, const std::string& key) {
   Candidate found{part.cell(key), {}, {}};
   if (!fs::exists(found.directory)) return found;
   try {
@@ -149,9 +149,10 @@ void expect_same_results(const fs::path& one, const fs::path& other) {
 
 // The cell to take: a finished one, else a failed one, else none; `left_out`: the keys of those that are not as they
 // were written.
-std::optional<Candidate> best(const std::vector<Part>& parts, const std::string& key, std::set<std::string>& left_out) {
+std::optional<Candidate> best(const std::vector<RunPart>& parts, const std::string& key,
+                              std::set<std::string>& left_out) {
   std::optional<Candidate> finished, failed;
-  for (const Part& part : parts) {
+  for (const RunPart& part : parts) {
     Candidate here = candidate(part, key);
     if (here.state.complete) {
       if (finished)
@@ -204,22 +205,22 @@ void expect_one_python(const Candidate& here, std::map<std::string, std::pair<Js
                     first.string(), here.directory.string(), method));
 }
 
-bool asks_live(const Part& part) {
+bool asks_live(const RunPart& part) {
   const Json answers = part.record().request.value("answers", Json());
   return answers.is_string() && std::holds_alternative<LiveAnswers>(read_answer_source(answers));
 }
 
 // The part that keeps every reply, where parts asked a model live, on one cassette; else the first.
-const Part& with_all_replies(const std::vector<Part>& parts) {
-  const Part* all = &parts.front();
+const RunPart& with_all_replies(const std::vector<RunPart>& parts) {
+  const RunPart* all = &parts.front();
   if (!asks_live(*all)) return *all;
-  const auto bytes = [](const Part& part) {
+  const auto bytes = [](const RunPart& part) {
     const auto kept = kept_replies(part.path());
     return kept ? fs::file_size(kept->path) : 0;
   };
-  for (const Part& part : parts)
+  for (const RunPart& part : parts)
     if (bytes(part) > bytes(*all)) all = &part;
-  for (const Part& part : parts)
+  for (const RunPart& part : parts)
     if (bytes(part) > 0 && !holds_lines(kept_replies(all->path())->path, kept_replies(part.path())->path))
       throw InputError(fmt::format(
           "{} and {}: a language model was asked the same questions for two cassettes; fill one with lgabench "
@@ -229,13 +230,13 @@ const Part& with_all_replies(const std::vector<Part>& parts) {
 }
 
 // The record of all parts' cells together, which has the first part's machine.
-RunRecord merged_record(RunRecord all, const std::vector<Part>& parts, const Json& answers,
+RunRecord merged_record(RunRecord all, const std::vector<RunPart>& parts, const Json& answers,
                         const std::string& command) {
   all.shard.reset();
   all.answers = answers;
   all.command = command;
   all.merged = Json::array();
-  for (const Part& part : parts) {
+  for (const RunPart& part : parts) {
     const RunRecord& one = part.record();
     all.merged.push_back({{"command", one.command}, {"machine", one.machine}, {"started", one.started}});
     all.started = std::min(all.started, one.started);
@@ -266,16 +267,17 @@ void copy_cell(const fs::path& from, const fs::path& to) {
 }  // namespace
 
 MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, const std::string& command) {
-  std::vector<Part> parts;
+  std::vector<RunPart> parts;
   for (const fs::path& run : runs) {
     std::error_code not_there;
     if (fs::equivalent(run, out, not_there))
       throw InputError(fmt::format("{}: both an input and OUT; choose another OUT", out.string()));
     parts.emplace_back(run);
-    for (const Part& part : parts) expect_same_programs(part, parts.back());  // the first may lack what two others have
+    for (const RunPart& part : parts)
+      expect_same_programs(part, parts.back());  // the first may lack what two others have
   }
   RunRecord all = parts.front().record();
-  for (const Part& part : parts) unite(all, parts.front(), part);
+  for (const RunPart& part : parts) unite(all, parts.front(), part);
   const bool of_several_runs = all.cells != parts.front().record().cells;
   std::set<std::string> left_out;
   std::map<std::string, fs::path> chosen, measured;
@@ -288,7 +290,7 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
     chosen[key] = from->directory;
   }
 
-  const Part& replies = with_all_replies(parts);
+  const RunPart& replies = with_all_replies(parts);
   const RunRecord record = merged_record(std::move(all), parts, replies.record().answers, command);
   const bool unconfined = is_unconfined(out);  // cells of an earlier merge stay
   const RunDirectory directory(out, record, Existing::resume);
@@ -299,7 +301,7 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
     run.merged = record.merged;
     run.confinement = unconfined ? unconfined_run : record.confinement;
   });
-  for (const Part& part : parts)
+  for (const RunPart& part : parts)
     if (!asks_live(part) || &part == &replies) keep_answers(kept_answers(part.path()), out);
   std::size_t copied = 0;
   auto last_line = std::chrono::steady_clock::now();
