@@ -29,6 +29,7 @@ class Fused : public lgabench::Learner {
     inner_->begin(*shown_);
   }
   const std::vector<float>& predict(const Samples& samples) override { return inner_->predict(fused(samples)); }
+  std::vector<float> features(const Samples& samples) override { return inner_->features(fused(samples)); }
   double backward(const Samples&, const std::vector<int>& batch) override { return inner_->backward(*shown_, batch); }
   void update(double rate) override { inner_->update(rate); }
   std::vector<float> parameters() const override { return inner_->parameters(); }

@@ -1,4 +1,4 @@
-lgabench_unit_test(learning_test OPTIMISED SHARDS 2 SOURCES learning_test.cpp centroid_policy_test.cpp heat_map_test.cpp stations_test.cpp noisy_copies_test.cpp shown_input_test.cpp
+lgabench_unit_test(learning_test OPTIMISED SHARDS 2 SOURCES learning_test.cpp centroid_policy_test.cpp done_test.cpp heat_map_test.cpp stations_test.cpp noisy_copies_test.cpp shown_input_test.cpp
                    LINK lgabench_learning)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   # GCC fuses products from -O2 on. Two rows in registers: 16 lanes are eight registers of AVX2.

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <memory>
 
+#include <lgabench/learning/done.hpp>
 #include <lgabench/learning/pointing.hpp>
 #include <lgabench/learning/policies.hpp>
 #include <lgabench/learning/shown_input.hpp>
@@ -89,9 +90,14 @@ class CloningPolicy : public Policy {
   Action act(const Observation& observation, const Instruction& instruction) override {
     featurizer_.write(observation, instruction, Phase::test, input_, 0);
     seen_.meet(hash_of(input_, 0));
+    if (done_ && done_->is_said(*learner_, input_)) return {};
     const std::vector<float>& predicted = learner_->predict(input_);
     return {predicted.begin(), predicted.end()};
   }
+
+  /// Where it may say that nothing is left to do: when it does.
+  void may_stop(Done done) { done_ = std::move(done); }
+  Learner& trained() { return *learner_; }
 
   std::optional<bool> seen_in_training() const override { return seen_.last(); }
   Shown shown() const override { return shown_input(offered_, inputs_, kind_, input_); }
@@ -104,12 +110,14 @@ class CloningPolicy : public Policy {
     SeenInputs seen = seen_;
     seen.learned(archive);
     if (!learner_->learned(archive)) return std::nullopt;
+    if (Done done = done_.value_or(Done()); done_) done.learned(archive);
     return archive.bytes();
   }
   /// What saved() wrote behind the inputs.
   void restore(Archive& archive) {
     seen_.learned(archive);
     if (!learner_->learned(archive)) throw MethodError("a policy of this network cannot be restored");
+    if (done_) done_->learned(archive);
     archive.expect_end();
   }
 
@@ -120,6 +128,7 @@ class CloningPolicy : public Policy {
   Featurizer featurizer_;
   std::unique_ptr<Learner> learner_;
   SeenInputs seen_;
+  std::optional<Done> done_;
   Samples input_;
 };
 
@@ -155,7 +164,7 @@ std::unique_ptr<Learner> CloningMethod::learner(const SampleShape& shape, const 
 
 std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& demonstrations, Services& services) {
   const CloningOptions options = read_cloning_options(services.options);
-  if (options.points) return pointing_policy(services.actions);
+  if (options.points) return pointing_policy(services.actions, services.may_stop);
   PolicyInputs offered = offered_by(inputs(services.options), options);
   const PictureSize native = picture_size(demonstrations);
   PolicyInputs seen = inputs_of(options.policy, offered, native);
@@ -170,6 +179,7 @@ std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& d
   auto policy = std::make_unique<CloningPolicy>(native, std::move(offered), std::move(seen), options.policy,
                                                 std::move(featurizer), std::move(trained));
   policy->learned_from(samples);
+  if (services.may_stop) policy->may_stop(samples.stops ? Done(policy->trained(), samples, *samples.stops) : Done());
   return policy;
 }
 
@@ -185,6 +195,7 @@ std::unique_ptr<Policy> CloningMethod::restore(const std::string& saved, Service
   std::unique_ptr<Learner> untrained = learner(featurizer.shape(), services);
   auto policy = std::make_unique<CloningPolicy>(saved_inputs.native, std::move(offered), std::move(seen),
                                                 options.policy, std::move(featurizer), std::move(untrained));
+  if (services.may_stop) policy->may_stop(Done());
   policy->restore(archive);
   return policy;
 }

@@ -336,6 +336,19 @@ const std::vector<float>& HeatMap::predict(const Samples& samples) {
   return impl_->outputs;
 }
 
+std::vector<float> HeatMap::features(const Samples& samples) {
+  std::vector<float> all;
+  for (int row = 0; row < samples.rows; ++row) {
+    View& seen = impl_->seen;
+    impl_->look(samples, row, seen);
+    impl_->network->map(seen.planes, seen.prior_or_null(), seen.text);
+    const std::vector<float> of_cells = impl_->network->highest_and_mean();
+    all.insert(all.end(), of_cells.begin(), of_cells.end());
+    if (seen.text) all.insert(all.end(), seen.text, seen.text + text_size);
+  }
+  return all;
+}
+
 double HeatMap::backward(const Samples&, const std::vector<int>& batch) {
   impl_->network->clear_gradients();
   if (impl_->station_network) impl_->station_network->clear_gradients();

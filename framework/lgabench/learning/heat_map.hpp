@@ -44,6 +44,8 @@ class HeatMap : public Learner {
   void begin(const Samples& samples) override;
   /// The mean demonstrated action where a mask shows no target, or never showed one.
   const std::vector<float>& predict(const Samples& samples) override;
+  /// Of each feature of HeatMapNetwork the highest and the mean of all cells; the text.
+  std::vector<float> features(const Samples& samples) override;
   /// Samples whose mask shows nothing near the taken point have no gradient.
   double backward(const Samples& samples, const std::vector<int>& batch) override;
   void update(double learning_rate) override;

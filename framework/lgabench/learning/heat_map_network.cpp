@@ -95,6 +95,17 @@ const std::vector<float>& HeatMapNetwork::map(const float* planes, const float* 
   return map_;
 }
 
+std::vector<float> HeatMapNetwork::highest_and_mean() const {
+  std::vector<float> all(size(2 * features));
+  const float* feature = convolutions_.back().outputs;  // none is below 0
+  for (int cell = 0; cell < cells; ++cell)
+    for (int k = 0; k < features; ++k, ++feature) {
+      all[size(k)] = std::max(all[size(k)], *feature);
+      all[size(features + k)] += *feature / cells;
+    }
+  return all;
+}
+
 // The columns of each row whose patch is not all 0: what one span of a row holds.
 void HeatMapNetwork::find_seen() {
   const Layer& first = convolutions_[0].layer;

@@ -33,6 +33,9 @@ class HeatMapNetwork {
   /// Each group's probability after the last map(), given the taken point.
   const std::vector<float>& groups(Vec2 taken_m);
 
+  /// Of the last map(): the highest of each feature in all cells, then the mean of each.
+  std::vector<float> highest_and_mean() const;
+
   /// Called before the first teach() of a batch.
   void clear_gradients();
   /// Cross entropy of the last map() to `wanted`, a probability of each cell, and of the groups to `group`; where there

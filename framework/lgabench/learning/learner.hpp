@@ -51,6 +51,9 @@ class Learner {
   /// learner made with the same arguments restores it. @returns false if the learner cannot be saved. @throws
   /// InputError for state that does not fit.
   virtual bool learned(Archive& /*archive*/) { return false; }
+  /// What the trained network makes of each row before the layer that makes an action, rows x as many numbers, or
+  /// none: a policy that may say that nothing is left to do learns to say it by them. It does not read labels.
+  virtual std::vector<float> features(const Samples& /*samples*/) { return {}; }
 };
 
 }  // namespace lgabench

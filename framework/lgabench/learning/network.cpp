@@ -132,6 +132,18 @@ const std::vector<float>& Network::predict(const Samples& samples) {
   return impl_->predicted;
 }
 
+std::vector<float> Network::features(const Samples& samples) {
+  std::vector<float> all;
+  const auto add = [&all](const float* numbers, int count) { all.insert(all.end(), numbers, numbers + count); };
+  for (int row = 0; row < samples.rows; ++row) {
+    impl_->forward(samples, {row}, false);
+    for (std::size_t t = 0; t < impl_->towers.size(); ++t) add(impl_->features[t], tower_features);
+    if (impl_->has_text) add(impl_->text, text_size);
+    if (impl_->state_numbers > 0) add(impl_->state, impl_->state_numbers);
+  }
+  return all;
+}
+
 double Network::backward(const Samples& samples, const std::vector<int>& batch) {
   const float* const outputs = impl_->forward(samples, batch, true);
   const int rows = static_cast<int>(batch.size());

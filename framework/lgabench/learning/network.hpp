@@ -38,6 +38,8 @@ class Network : public Learner {
   void begin(const Samples& samples) override;
   /// With batch normalisation the running statistics are used.
   const std::vector<float>& predict(const Samples& samples) override;
+  /// Of the towers, the text and the state.
+  std::vector<float> features(const Samples& samples) override;
   double backward(const Samples& samples, const std::vector<int>& batch) override;
   /// One step of Adam (betas .9 and .999, epsilon 1e-8).
   void update(double learning_rate) override;

@@ -23,7 +23,7 @@ void put(const ActionSpace& actions, std::size_t place, Vec2 at, PictureSize siz
 
 class Pointing final : public Policy {
  public:
-  explicit Pointing(const ActionSpace& actions) : actions_(actions) {}
+  Pointing(const ActionSpace& actions, bool may_stop) : actions_(actions), may_stop_(may_stop) {}
 
   Action act(const Observation& observation, const Instruction& instruction) override {
     const std::vector<Placed> visible = placed(observation);
@@ -35,6 +35,7 @@ class Pointing final : public Policy {
     };
     std::vector<std::uint8_t> ids =
         without_places(grounded(instruction.selection.target, visible, observation.brought));
+    if (ids.empty() && may_stop_) return {};
     if (ids.empty()) {
       for (const Placed& one : visible) ids.push_back(one.instance.id);
       ids = without_places(ids);
@@ -45,6 +46,7 @@ class Pointing final : public Policy {
 
  private:
   ActionSpace actions_;
+  bool may_stop_;
 };
 
 }  // namespace
@@ -86,6 +88,8 @@ std::uint8_t any_in_view(const std::vector<std::uint8_t>& ids, const Observation
   return ids[RandomStream(name).below(static_cast<std::uint32_t>(ids.size()))];
 }
 
-std::unique_ptr<Policy> pointing_policy(const ActionSpace& actions) { return std::make_unique<Pointing>(actions); }
+std::unique_ptr<Policy> pointing_policy(const ActionSpace& actions, bool may_stop) {
+  return std::make_unique<Pointing>(actions, may_stop);
+}
 
 }  // namespace lgabench

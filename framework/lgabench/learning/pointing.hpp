@@ -15,7 +15,8 @@ Action pointed_at(const Observation& observation, std::uint8_t instance, const A
 /// Chooses one of those instances, by a hash of all that is in view. @pre there is one.
 std::uint8_t any_in_view(const std::vector<std::uint8_t>& ids, const Observation& observation);
 
-/// policy=point: points at what the Selection keeps, at any of several; where it keeps nothing, at anything in view.
-std::unique_ptr<Policy> pointing_policy(const ActionSpace& actions);
+/// policy=point: points at what the Selection keeps, at any of several. Where it keeps nothing, it says that nothing is
+/// left to do if it may, else it points at anything in view.
+std::unique_ptr<Policy> pointing_policy(const ActionSpace& actions, bool may_stop = false);
 
 }  // namespace lgabench

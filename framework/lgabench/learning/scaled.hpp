@@ -20,6 +20,7 @@ class ScaledLearner : public Learner {
   /// Keeps a copy of the samples.
   void begin(const Samples& samples) override;
   const std::vector<float>& predict(const Samples& samples) override;
+  std::vector<float> features(const Samples& samples) override { return inner_->features(samples); }
   double backward(const Samples&, const std::vector<int>& batch) override { return inner_->backward(*scaled_, batch); }
   void update(double learning_rate) override { inner_->update(learning_rate); }
   std::vector<float> parameters() const override { return inner_->parameters(); }
