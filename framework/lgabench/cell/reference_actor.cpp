@@ -13,6 +13,7 @@
 #include <lgabench/abstraction/committed_embeddings.hpp>
 #include <lgabench/abstraction/taken_looks.hpp>
 #include <lgabench/cell/constant_action.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/stations.hpp>
@@ -53,6 +54,29 @@ Actor any_of(const std::string& row, const Rule& rule) {
 
 Actor any_object(const std::string& row, const DemonstratedScenes&) {
   return any_of(row, [](const Instances& all) { return all; });
+}
+
+// Takes any visible object, at each step drawn anew, until it stops. Both scenes of a pair have the same draws.
+template <typename Stops>
+Actor until(const std::string& row, const Stops& stops) {
+  return {[row, stops](const Environment& environment, const Given& given) {
+    RandomStream stream(fmt::format("{}/{}{}", row, hex(given.scene.shared_hash()), later_stream(given.step)));
+    if (stops(given, stream)) return Move(Action());
+    const Instances all = visible(given);
+    return Move(environment.expert_action_for(all[stream.below(static_cast<std::uint32_t>(all.size()))].id));
+  }};
+}
+
+Actor stops_at_once(const std::string& row, const DemonstratedScenes&) {
+  return until(row, [](const Given&, RandomStream&) { return true; });
+}
+
+Actor two_then_stops(const std::string& row, const DemonstratedScenes&) {
+  return until(row, [](const Given& given, RandomStream&) { return given.observation().brought.size() >= 2; });
+}
+
+Actor stops_at_random(const std::string& row, const DemonstratedScenes&) {
+  return until(row, [](const Given&, RandomStream& stream) { return stream.uniform() < .3; });
 }
 
 Instances sharing_most(const Instances& all) {
@@ -180,6 +204,9 @@ constexpr Acting all_acting[] = {
     {"most_alike_names", nullptr, most_alike_names},
     {"most_shared", nullptr, most_shared},
     {"never_demonstrated", nullptr, never_demonstrated},
+    {"stops_at_once", nullptr, stops_at_once},
+    {"two_then_stops", nullptr, two_then_stops},
+    {"stops_at_random", nullptr, stops_at_random},
 };
 
 const Acting& acting(const std::string& row) {

@@ -24,7 +24,8 @@ std::unique_ptr<Method> reference_method(const std::string& id);
 /// its type was taken + 1/2) x (times its texture was + 1/2) in the command's demonstrations, in all where it has none;
 /// "most_alike_names", likewise by alike_in_name(); "least_demonstrated", the lowest score in all. Where actions have
 /// stations, the last three lead to the object that scores so among those of the second set. Drawn from a stream of row
-/// and scene. None of a row that is a method.
+/// and scene. "stops_at_once", "two_then_stops" and "stops_at_random" take any object at each step until they say that
+/// nothing is left to do, which is an action where the scenario has may_stop. None of a row that is a method.
 /// @throws InputError for another id.
 Actor reference_actor(const std::string& id, const DemonstratedScenes& shown = {});
 

@@ -64,7 +64,20 @@ const std::vector<ReferenceRow>& reference_rows() {
        "A visible object that is like no demonstrated target",
        learns,
        !in_every_suite,
-       {6, 2}}};
+       {6, 2}},
+      {"stops_at_once", "stops at once", "Nobody: nothing is left to do", !learns, !in_every_suite, {1, 3}},
+      {"two_then_stops",
+       "any two, then stops",
+       "Two visible objects, drawn at random; then nothing is left to do",
+       !learns,
+       !in_every_suite,
+       {3, 2, 1, 2}},
+      {"stops_at_random",
+       "stops at random",
+       "At each step with odds of .3 nothing is left to do, else a visible object, drawn at random",
+       !learns,
+       !in_every_suite,
+       {7, 3, 1, 3}}};
   return all;
 }
 
