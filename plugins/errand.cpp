@@ -274,7 +274,7 @@ class ErrandMethod : public CloningMethod {
     for (Demonstration& one : shown) one.instruction.selection = truth_.at(one.instruction.utterance);
     return std::make_unique<BringsNext>(
         CloningMethod::learn(shown, services), moments.at(services.options.at("moment")),
-        Readings(names.at(services.options.at("names"))), std::move(hows_), services.may_stop);
+        Readings(names.at(services.options.at("readings"))), std::move(hows_), services.may_stop);
   }
 
  private:
@@ -372,7 +372,7 @@ LGABENCH_METHOD_ASKING(
     R"("moment": {"default": "each", "values": ["each", "first", "planned"], )"
     R"("help": "when it is asked what is meant next: at each step, or once; planned: once, for all steps", )"
     R"("source": "docs/suites.md"}, )"
-    R"("names": {"default": "each", "values": ["each", "first", "majority"], )"
+    R"("readings": {"default": "each", "values": ["each", "first", "majority"], )"
     R"("help": "an object's names: as read at each step, as read first, or as read most often so far", )"
     R"("source": "docs/suites.md"}, )" LGABENCH_CLONING_OPTIONS "," LGABENCH_PICTURE_OPTION "," LGABENCH_MASK_OPTIONS
     "}")
