@@ -197,7 +197,7 @@ def last_demonstrated(scene, which):
 def hows(pair):
     sets = {"either": pair.union, **dict(zip(("first", "second"), pair.sets))} if len(pair.sets) > 1 else {"either": pair.union}
     found = {}
-    for one in DATA["hows"]:
+    for one in json.loads((ROOT / "plugins/hows.json").read_text()):
         if all(turn.get("of", "either") in sets for turn in one["turns"]):
             turns = meaning.read({"turns": [{**turn, "sets": []} for turn in one["turns"]]})
             found[tuple(turn._replace(sets=sets[given.get("of", "either")]) for turn, given in zip(turns, one["turns"]))] = one["weight"]
