@@ -254,7 +254,7 @@ class Formats(unittest.TestCase):
 
     def test_files_of_the_sources_are_as_their_schemas_say(self):
         files = [(name, SOURCE / f"results/leaderboard/{name}.json") for name in ("labels", "tracks", "vouched", "vouched_entries", "instructions", "scenes")]
-        files += [("recorded_answers", file) for file in (SOURCE / "framework/lgabench/abstraction/answers").glob("*.json")]
+        files += [("recorded_answers", file) for file in (SOURCE / "framework/lgabench/abstraction/answers").rglob("*.json")]
         self.assertGreater(len(files), 10)
         for name, file in files:
             schema, document = json.loads((self.folder / f"{name}.schema.json").read_text()), json.loads(file.read_text())

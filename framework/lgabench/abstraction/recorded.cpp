@@ -55,7 +55,7 @@ RecordedAnswer read_answer(const JsonReader& entry, const FeatureSpace& space, c
 
 }  // namespace
 
-std::vector<std::string> recorded_sources() { return shipped_names("answers"); }
+std::vector<std::string> recorded_sources() { return shipped_answers(); }
 
 std::string recorded_source(const Scenario& scenario, const std::string& answers, bool to_edit) {
   if (answers != "recorded") return answers;

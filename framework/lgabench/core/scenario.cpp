@@ -217,7 +217,7 @@ void read_train(const JsonReader& file, std::vector<std::string> members, const 
 // Whose answers are the scenario's recorded ones, and which of them are given to people.
 void read_answers(const JsonReader& reader, Scenario& scenario) {
   reader.only({"recorded", "edited"});
-  const std::vector<std::string>& known = shipped_names("answers");
+  const std::vector<std::string>& known = shipped_answers();
   const auto file = [&known](const JsonReader& name) {
     if (!contains(known, name.string())) name.fail(fmt::format("one of: {}", fmt::join(known, ", ")));
     return name.string();

@@ -33,4 +33,17 @@ const std::vector<std::string>& shipped_names(const std::string& folder) {
   });
 }
 
+const std::vector<std::string>& shipped_answers() {
+  static const std::vector<std::string> all = [] {
+    std::vector<std::string> names = shipped_names("answers"), folders;
+    for (const auto& entry : fs::directory_iterator(data_directory() / "answers"))
+      if (entry.is_directory()) folders.push_back(entry.path().filename().string());
+    std::sort(folders.begin(), folders.end());
+    for (const std::string& folder : folders)
+      for (const std::string& name : shipped_names("answers/" + folder)) names.push_back(folder + "/" + name);
+    return names;
+  }();
+  return all;
+}
+
 }  // namespace lgabench

@@ -6,6 +6,7 @@
 
 #include <lgabench/abstraction/asked_model.hpp>
 #include <lgabench/abstraction/prompt.hpp>
+#include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
@@ -24,6 +25,13 @@ std::string folder_hash(const std::string& folder) {
   for (const std::string& name : shipped_names(folder))
     lines += fmt::format("{}.json {}\n", name, shipped_sha256(data_directory() / folder / (name + ".json")));
   return sha256(lines);
+}
+
+// Of the recorded answers that are read, or would be.
+std::string folder_of_answers(const Scenario& scenario, const AnswerSource& answers) {
+  const auto* recorded = std::get_if<RecordedAnswers>(&answers);
+  const std::string source = recorded_source(scenario, recorded ? recorded->source : "recorded", false);
+  return contains(shipped_answers(), source) ? (fs::path("answers") / source).parent_path().string() : "answers";
 }
 
 }  // namespace
@@ -133,7 +141,7 @@ std::string key(const Cell& cell) { return sha256(canonical(to_json(cell))).subs
 Json data_hashes(const Scenario& scenario, const AnswerSource& answers, const Reading& reading) {
   const fs::path data = data_directory();
   Json hashes{{"feature_space", shipped_sha256(feature_space_file(scenario.space.id))},
-              {"answers", folder_hash("answers")},
+              {"answers", folder_hash(folder_of_answers(scenario, answers))},
               {"embeddings", folder_hash("embeddings")}};
   const std::string& environment = scenario.environment->id();
   if (fs::is_directory(data / environment)) hashes["environment"] = folder_hash(environment);
