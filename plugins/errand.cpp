@@ -361,18 +361,18 @@ LGABENCH_METHOD_ASKING(
     R"("sets": {"default": "truth", "values": ["truth", "counts", "names", "bayes", "part"], )"
     R"("help": "what belongs: the truth, or what demonstrations' labels say by a rule, the command unread: counts of )"
     R"(types and textures that were taken; those, weighed by what the names mean; counts of what was taken over those )"
-    R"(of what was left; the types or the textures alone", "source": "docs/suites.md"}, )"
+    R"(of what was left; the types or the textures alone", "source": "docs/relatives.md"}, )"
     R"("shown_by": {"default": "all", "values": ["all", "nearest"], )"
     R"("help": "whose labels: of all demonstrated commands, or of the one that shares the rarest words", )"
-    R"("source": "docs/suites.md", "needs": {"nearest": {"sets": ["counts", "names", "bayes", "part"]}}}, )"
+    R"("source": "docs/relatives.md", "needs": {"nearest": {"sets": ["counts", "names", "bayes", "part"]}}}, )"
     R"("how": {"default": "truth", "values": ["truth", "all", "two", "each", "words", "habit", "shown"], )"
     R"("help": "how it is used: the truth; all of it, or any two; one of each where the command says each, else all; )"
     R"(words: likewise, and two where it says two; habit: as many as demonstrations took most often; shown: by Bayes' )"
-    R"(rule over a finite list, from the command's demonstrations", "source": "docs/suites.md"}, )"
+    R"(rule over a finite list, from the command's demonstrations", "source": "docs/relatives.md"}, )"
     R"("moment": {"default": "each", "values": ["each", "first", "planned"], )"
     R"("help": "when it is asked what is meant next: at each step, or once; planned: once, for all steps", )"
-    R"("source": "docs/suites.md"}, )"
+    R"("source": "docs/relatives.md"}, )"
     R"("readings": {"default": "each", "values": ["each", "first", "majority"], )"
     R"("help": "an object's names: as read at each step, as read first, or as read most often so far", )"
-    R"("source": "docs/suites.md"}, )" LGABENCH_CLONING_OPTIONS "," LGABENCH_PICTURE_OPTION "," LGABENCH_MASK_OPTIONS
+    R"("source": "docs/relatives.md"}, )" LGABENCH_CLONING_OPTIONS "," LGABENCH_PICTURE_OPTION "," LGABENCH_MASK_OPTIONS
     "}")
