@@ -1,3 +1,3 @@
-lgabench_unit_test(errand_row_test SOURCES errand_row_test.cpp LINK lgabench_errand lgabench_plugin lgabench_tabletop)
+lgabench_unit_test(errand_row_test SOURCES errand_row_test.cpp LINK lgabench_errand lgabench_cell lgabench_tabletop)
 target_compile_definitions(errand_row_test PRIVATE LGABENCH_GOLDEN="${CMAKE_CURRENT_SOURCE_DIR}/golden")
-add_dependencies(errand_row_test errand)
+add_dependencies(errand_row_test errand engines)

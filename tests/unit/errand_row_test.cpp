@@ -1,10 +1,15 @@
 // The row `errand`: what it learns from demonstrations, and what its policy brings next.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
+#include <set>
 
 #include <lgabench/abstraction/human.hpp>
 #include <lgabench/abstraction/nobody.hpp>
+#include <lgabench/abstraction/scenes.hpp>
+#include <lgabench/cell/evaluator.hpp>
+#include <lgabench/cell/reference_actor.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
@@ -13,6 +18,7 @@
 
 #include "../../plugins/hows.hpp"
 #include "../../plugins/labels.hpp"
+#include "../engine_under_test.hpp"
 #include "testing.hpp"
 
 namespace lgabench {
@@ -264,6 +270,29 @@ TEST_F(ErrandRow, AnObjectKeepsTheNameOfItsReadings) {
   EXPECT_EQ(acts(*first, {pear, bowl}, {misread.name}), 3) << "what was brought was an apple";
   first->reset();
   EXPECT_EQ(acts(*first, {misread, bowl}), 0) << "another episode";
+}
+
+// Whoever stops without hearing the words does alike in both scenes of a pair, until a judge ends one of them.
+TEST(ErrandReferences, ThatStopActAlikeInBothScenesOfAPair) {
+  const Scenario scenario = load_scenario("errands_fruit");
+  const auto environment = make_environment(scenario, make_engine());
+  std::vector<TestScene> scenes;
+  for (int index = 0; index < 24; ++index) scenes.push_back({test_scene(scenario, "continuous", "told", 7, index)});
+  for (const char* row : {"stops_at_once", "two_then_stops", "stops_at_random"}) {
+    const std::vector<Episode> episodes = evaluate(*environment, scenes, reference_actor(row), [](int) {});
+    std::size_t longest = 0;
+    std::set<std::size_t> lengths;
+    for (std::size_t k = 0; k < episodes.size(); k += 2) {
+      const std::vector<Action> one = episodes[k].actions(), other = episodes[k + 1].actions();
+      const auto common = static_cast<std::ptrdiff_t>(std::min(one.size(), other.size()));
+      EXPECT_TRUE(std::equal(one.begin(), one.begin() + common, other.begin())) << row << " " << k;
+      EXPECT_FALSE(episodes[k].success() && episodes[k + 1].success()) << row << " " << k;
+      longest = std::max({longest, one.size(), other.size()});
+      lengths.insert({one.size(), other.size()});
+    }
+    EXPECT_EQ(lengths == std::set<std::size_t>{1}, row == std::string("stops_at_once"));
+    EXPECT_TRUE(longest == 3 || row != std::string("two_then_stops")) << longest;
+  }
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ const std::vector<ReferenceRow>& reference_rows() {
        learns,
        !in_every_suite,
        {6, 2}},
-      {"stops_at_once", "stops at once", "Nobody: nothing is left to do", !learns, !in_every_suite, {1, 3}},
+      {"stops_at_once", "stops at once", "Says at once that nothing is left to do", !learns, !in_every_suite, {1, 3}},
       {"two_then_stops",
        "any two, then stops",
        "Two visible objects, drawn at random; then nothing is left to do",
