@@ -5,6 +5,7 @@ A way is played by errands_meaning.py, which tries out what may be brought, and 
 
 Usage: python3 tests/measure/errands_bayes.py > tests/unit/golden/hows.json
 """
+import copy
 import json
 import random
 
@@ -13,6 +14,13 @@ from errands_pilot import hows, posterior
 from errands_scenes import DATA, demonstrations, pairs_of, test_scene
 
 SEED, SCENES = 40961, 50
+
+
+def in_order_of(pair, turns):
+    """The ways as hows.json lists them, where `first` and `second` are those of that command."""
+    own = copy.copy(pair)
+    own.sets = tuple(dict.fromkeys(turn.sets for turn in turns))
+    return hows(own)
 
 
 def scene(pairs, number):
@@ -31,7 +39,7 @@ def scene(pairs, number):
         left.remove(brought[-1])
     return {"scenario": f"errands_{pair.id}", "command": pair.words[which],
             "demonstrations": [{"things": one.things, "took": [name for _, name in one.steps]} for one in demonstrations(pair, pair.turns[which], number, shown)],
-            "probabilities": [after.get(turns, 0) for turns in hows(pair)], "states": states}
+            "probabilities": [after.get(turns, 0) for turns in in_order_of(pair, pair.turns[which])], "states": states}
 
 
 def main():

@@ -36,8 +36,11 @@ std::vector<Named> names_of(const Json& json) {
 TEST(Hows, BayesSaysWhatAnotherComputationSaysInFiftyScenes) {
   const Json scenes = read_json(fs::path(LGABENCH_GOLDEN) / "hows.json");
   ASSERT_EQ(scenes.size(), 50u);
+  std::map<std::string, Scenario> scenarios;
   for (const Json& scene : scenes) {
-    const Scenario scenario = load_scenario(scene.at("scenario"));
+    const std::string id = scene.at("scenario");
+    if (scenarios.count(id) == 0) scenarios.emplace(id, load_scenario(id));
+    const Scenario& scenario = scenarios.at(id);
     SCOPED_TRACE(scene.at("command"));
     const auto command = std::find_if(scenario.commands.begin(), scenario.commands.end(),
                                       [&](const auto& one) { return scene.at("command") == one.utterance; });
@@ -225,9 +228,10 @@ TEST_F(ErrandRow, WhoDoesNotHearTheHowActsAlike) {
     EXPECT_EQ(takes(*deaf, every, table), takes(*deaf, each, table)) << how;
     EXPECT_EQ(takes(*deaf, every, table).size(), how == std::string("two") ? 2u : 3u);
   }
-  const auto hears = learned({{"how", "words"}}), hears_each = learned({{"how", "each"}});
+  const auto hears = learned({{"how", "words"}});
   EXPECT_EQ(takes(*hears, each, table).size(), 2u);
   EXPECT_EQ(takes(*hears, two, table).size(), 2u);
+  const auto hears_each = learned({{"how", "each"}});
   EXPECT_EQ(takes(*hears_each, each, table).size(), 2u);
   EXPECT_EQ(takes(*hears_each, two, table).size(), 3u);
   EXPECT_EQ(told.at(two).selection.target.turns.size(), 1u) << "what is told is recorded";
