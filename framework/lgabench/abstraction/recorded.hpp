@@ -11,7 +11,8 @@
 
 namespace lgabench {
 
-/// The sources of recorded answers: the files of the data directory's answers/ and of its folders, without their ending.
+/// The sources of recorded answers: the files of the data directory's answers/ and of its folders, without their
+/// ending.
 std::vector<std::string> recorded_sources();
 
 /// The source that `answers` means for the scenario: one of recorded_sources(), or for "recorded" the scenario's own,

@@ -40,8 +40,8 @@ const std::string& shipped_sha256(const std::filesystem::path& file);
 
 /// Names, without their ending, of the .json files in a folder of the data, sorted; none where there is no folder.
 const std::vector<std::string>& shipped_names(const std::string& folder);
-/// Names of the shipped files of recorded answers: "NAME" for those in answers/, and "FOLDER/NAME". A folder's files are
-/// no part of the data of who reads answers of another.
+/// Names of the shipped files of recorded answers: "NAME" for those in answers/, and "FOLDER/NAME". A folder's files
+/// are no part of the data of who reads answers of another.
 const std::vector<std::string>& shipped_answers();
 
 }  // namespace lgabench
