@@ -22,6 +22,11 @@ Action read_action(const JsonReader& reader) {
 
 }  // namespace
 
+static void fields(Progress& progress, Fields& field) {
+  field("right", progress.right);
+  field("needed", progress.needed, at_least(1));
+}
+
 void fields(Episode& e, Fields& field) {
   const JsonReader* const reader = field.reading();
   bool success = e.success();
@@ -44,6 +49,10 @@ void fields(Episode& e, Fields& field) {
   if (reader && !e.then.empty() && (e.action.empty() || contains(e.then, Action())))
     reader->at("then").fail("the numbers of actions, and of an \"action\" before them");
   field("done", e.done, when(e.done));
+  field("pair", e.pair, when(!e.pair.empty()));
+  field("progress", e.progress, when(e.progress.has_value()));
+  if (reader && e.progress && (e.progress->right > e.progress->needed || (e.progress->share() == 1) != success))
+    reader->at("progress").fail("at most as many right steps as are needed, and as many exactly on success");
   field("input_seen", e.input_seen, when(e.input_seen.has_value()));
   field("told", e.told, when(e.told.has_value()));
   field("took", e.took, one_of(takings, when(!e.took.empty()), "{}"));

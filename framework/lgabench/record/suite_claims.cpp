@@ -35,6 +35,13 @@ SuiteClaim::Test test(const JsonReader& reader) {
   return static_cast<SuiteClaim::Test>(found - words.begin());
 }
 
+// Whether the claim is of paired success.
+bool paired(const JsonReader& measure) {
+  const std::string word = measure.string();
+  if (word != "success" && word != "paired success") measure.fail("success or paired success");
+  return word == "paired success";
+}
+
 // An array with a value or more, each once.
 template <class Value, class Read>
 std::vector<Value> list(const JsonReader& reader, Read read) {
@@ -64,6 +71,7 @@ SuiteClaim read_claim(const JsonReader& reader) {
   const bool slope = claim.test == Test::slope, has_margin = claim.test != Test::ordering && !slope;
   if (slope) members.insert(members.end(), {"option", "levels"});
   if (has_margin) members.emplace_back("margin");
+  if (!slope) members.emplace_back("measure");
   reader.only(members);
   claim.id = sentence(reader.at("id"));
   claim.statement = sentence(reader.at("statement"));
@@ -71,6 +79,7 @@ SuiteClaim read_claim(const JsonReader& reader) {
   claim.above = row(reader.at("above"));
   claim.below = row(reader.at("below"));
   if (claim.above == claim.below) reader.at("below").fail("another row than \"above\"");
+  if (reader.has("measure")) claim.paired = paired(reader.at("measure"));
   const auto name = [](const JsonReader& one) { return one.string(); };
   if (reader.has("scenarios")) claim.scenarios = list<std::string>(reader.at("scenarios"), name);
   if (reader.has("arms")) claim.arms = list<std::string>(reader.at("arms"), name);

@@ -16,7 +16,8 @@ struct SuiteClaim {
 
   std::string id, statement, refuted_if;
   Test test = Test::ordering;
-  std::string above, below;                  // rows: "ID+OPTION=VALUE+..."
+  bool paired = false;       // of the share of pairs of which both commands end right, in place of that of episodes
+  std::string above, below;  // rows: "ID+OPTION=VALUE+..."
   std::vector<std::string> scenarios, arms;  // empty: all
   std::vector<int> demonstrations;           // likewise
   double margin = 0;

@@ -295,10 +295,10 @@ Claim measured_claim(const SuiteClaim& stated, const Field& all) {
         missing.these.reason = missing.alike.reason = "no arm " + arm;
         claim.differences.push_back(missing);
       } else {
-        claim.differences.push_back(
-            stated.test == SuiteClaim::Test::slope
-                ? measured_slope(field, stated, arm, n)
-                : measured(field, stated.id, claimed_method(stated.above), claimed_method(stated.below), arm, n));
+        claim.differences.push_back(stated.test == SuiteClaim::Test::slope
+                                        ? measured_slope(field, stated, arm, n)
+                                        : measured(field, stated.id, claimed_method(stated.above),
+                                                   claimed_method(stated.below), arm, n, stated.paired));
       }
     }
   return claim;

@@ -24,11 +24,15 @@ struct Tested {
                                  // demonstrations; of a suite's own: over all differences of its claims
 };
 
+/// The unit of a difference in paired success, whose scenarios are pairs of commands.
+inline constexpr const char* paired_unit = "paired success";
+
 /// Two rows on the mean over scenarios, paired by scenario, training seed, participant and scene; or the seconds that
 /// participants took for both.
 struct ClaimedDifference {
   std::string above, below, arm;  // rows; the change is above minus below; no arm for seconds
-  std::string unit = "success";   // or "seconds", a participant; or "success per 0.1 of OPTION", what is lost less
+  // "success" or paired_unit; "seconds", a participant's; or "success per 0.1 of OPTION", what is lost less
+  std::string unit = "success";
   int demonstrations = 0;
   Tested these;  // would other test scenes and training seeds of these scenarios say the same? (paired_change)
   Tested alike;  // would other scenarios like these? (t on the scenarios' differences, from six on)

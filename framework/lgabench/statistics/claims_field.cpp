@@ -7,6 +7,7 @@
 
 #include <lgabench/core/contains.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <lgabench/statistics/paired.hpp>
 #include <lgabench/statistics/pairs.hpp>
 
 namespace lgabench::statistics {
@@ -126,10 +127,11 @@ bool has_arm(const CellResult& cell, const std::string& arm) {
 }
 
 ClaimedDifference measured(const Field& field, const std::string& claim, const ClaimedMethod& above,
-                           const ClaimedMethod& below, const std::string& arm, int n) {
+                           const ClaimedMethod& below, const std::string& arm, int n, bool paired) {
   ClaimedDifference missing;
   missing.arm = arm;
   missing.demonstrations = n;
+  if (paired) missing.unit = paired_unit;
   for (const auto& [row, method] : {std::pair(&missing.above, &above), {&missing.below, &below}}) {
     *row = find_row(field, *method);
     const bool found = field.find(*row, n) != nullptr;
@@ -137,20 +139,23 @@ ClaimedDifference measured(const Field& field, const std::string& claim, const C
     if (!found && missing.these.reason.empty()) missing.these.reason = fmt::format("no row {}", method->text());
   }
   missing.alike.reason = missing.these.reason;
-  return missing.these.reason.empty() ? measured_rows(field, claim, missing.above, missing.below, arm, n) : missing;
+  return missing.these.reason.empty() ? measured_rows(field, claim, missing.above, missing.below, arm, n, paired)
+                                      : missing;
 }
 
 ClaimedDifference measured_rows(const Field& field, const std::string& claim, const std::string& above,
-                                const std::string& below, const std::string& arm, int n) {
+                                const std::string& below, const std::string& arm, int n, bool paired) {
   ClaimedDifference d;
   d.above = above;
   d.below = below;
   d.arm = arm;
   d.demonstrations = n;
+  if (paired) d.unit = paired_unit;
   const Field::Policies &high = *field.find(d.above, n), &low = *field.find(d.below, n);
   Field::Policies all = high;
   all.insert(low.begin(), low.end());
   PairedRow pairs;
+  BothRows both;
   std::set<long long> seeds;
   int wanted = 0;
   const auto people = [](const Field::Policies& row, const Field::Policies::key_type& which) {
@@ -173,7 +178,11 @@ ClaimedDifference measured_rows(const Field& field, const std::string& claim, co
     for (const std::string& participant : participants(a, b)) {
       ++wanted;
       const CellResult *first = finished(a, participant), *second = finished(b, participant);
-      if (first && second) pairs.add(item.first.first, pair_policies(*first, *second, arm), participant);
+      if (!first || !second) continue;
+      pairs.add(item.first.first, pair_policies(*first, *second, arm), participant);
+      auto& [firsts, seconds] = both[{item.first.second, participant}];
+      firsts.push_back(first);
+      seconds.push_back(second);
     }
     seeds.insert(item.first.second);
   }
@@ -181,8 +190,14 @@ ClaimedDifference measured_rows(const Field& field, const std::string& claim, co
     d.these.reason = d.alike.reason = fmt::format("{} of {} policies finished in both rows", pairs.policies(), wanted);
     return d;
   }
+  if (paired) pairs = both_on_pairs(both, arm);
+  if (pairs.policies() == 0) {
+    d.these.reason = d.alike.reason = fmt::format("no pairs of scenes in arm {}", arm);
+    return d;
+  }
   sum_up(d, pairs, seeds,
-         fmt::format("claims/{}/{}/{}/{}/{}/{}/{}", claim, field.layout, field.engine, d.above, d.below, arm, n));
+         fmt::format("claims{}/{}/{}/{}/{}/{}/{}/{}", paired ? "/paired" : "", claim, field.layout, field.engine,
+                     d.above, d.below, arm, n));
   return d;
 }
 

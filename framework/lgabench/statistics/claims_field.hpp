@@ -37,13 +37,13 @@ struct Field {
 std::string find_row(const Field& field, const ClaimedMethod& method);
 
 /// Compares `above` with `below`, each policy with its pair. Not tested where a row or a pair is missing: a row that
-/// fails on hard scenarios would gain by it. Verdicts are left open.
+/// fails on hard scenarios would gain by it. Verdicts are left open. `paired`: their paired success.
 ClaimedDifference measured(const Field& field, const std::string& claim, const ClaimedMethod& above,
-                           const ClaimedMethod& below, const std::string& arm, int n);
+                           const ClaimedMethod& below, const std::string& arm, int n, bool paired = false);
 
 /// Compares so two rows that the field has at this number of demonstrations.
 ClaimedDifference measured_rows(const Field& field, const std::string& claim, const std::string& above,
-                                const std::string& below, const std::string& arm, int n);
+                                const std::string& below, const std::string& arm, int n, bool paired = false);
 
 /// What success does per 0.1 of the option of both methods, least squares over its levels, of `above` minus that of
 /// `below`; paired as above, all levels together.

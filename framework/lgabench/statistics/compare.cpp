@@ -11,6 +11,7 @@
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/core/suggest.hpp>
 #include <lgabench/statistics/names.hpp>
+#include <lgabench/statistics/paired.hpp>
 
 namespace lgabench::statistics {
 namespace {
@@ -99,6 +100,7 @@ std::vector<ComparedRow> compare_rows(const std::vector<CellPair>& pairs) {
   struct Draft {
     ComparedRow row;
     PairedRow policies;
+    BothRows cells;
     std::vector<double> p;       // McNemar's, of each pair of cells
     std::vector<int> direction;  // only_second - only_first
   };
@@ -118,6 +120,9 @@ std::vector<ComparedRow> compare_rows(const std::vector<CellPair>& pairs) {
       row.demonstrations = a.demonstrations;
       const PolicyPair policies = pair_policies(a, b, arm);
       draft.policies.add(a.scenario, policies, a.participant);
+      auto& [cells_a, cells_b] = draft.cells[{a.training_seed, a.participant}];
+      cells_a.push_back(&a);
+      cells_b.push_back(&b);
       draft.p.push_back(mcnemar(policies.only_first, policies.only_second));
       draft.direction.push_back(policies.only_second - policies.only_first);
     }
@@ -128,8 +133,11 @@ std::vector<ComparedRow> compare_rows(const std::vector<CellPair>& pairs) {
     ComparedRow& row = draft.row;
     row.success_a = draft.policies.first_success();
     row.success_b = draft.policies.second_success();
-    row.change = draft.policies.change(
-        fmt::format("compare/{}/{}/{}/{}/{}", row.layout, row.engine, row.method, row.demonstrations, row.arm));
+    const std::string name =
+        fmt::format("compare/{}/{}/{}/{}/{}", row.layout, row.engine, row.method, row.demonstrations, row.arm);
+    row.change = draft.policies.change(name);
+    if (const PairedRow both = both_on_pairs(draft.cells, row.arm); both.policies() > 0)
+      row.paired = {both.first_success(), both.second_success(), both.change(name + "/paired")};
     row.scenarios = draft.policies.scenarios();
     row.total = draft.policies.total();
     row.cells = draft.policies.policies();
@@ -213,7 +221,7 @@ std::string verdict(const RunComparison& comparison) {
 
 Json to_json(const RunComparison& comparison) {
   Json rows = Json::array(), times = Json::array();
-  for (const ComparedRow& r : comparison.rows)
+  for (const ComparedRow& r : comparison.rows) {
     rows.push_back({{"layout", r.layout},
                     {"engine", r.engine},
                     {"method", r.method},
@@ -237,6 +245,13 @@ Json to_json(const RunComparison& comparison) {
                     {"same_actions", r.total.same_actions},
                     {"worse", r.worse()},
                     {"better", r.better()}});
+    if (const auto& paired = r.paired)
+      rows.back()["paired"] = {{"success_a", paired->a},
+                               {"success_b", paired->b},
+                               {"difference", paired->change.difference},
+                               {"interval", interval_json(paired->change.interval)},
+                               {"p", paired->change.p}};
+  }
   for (const ComparedTime& t : comparison.times)
     times.push_back({{"layout", t.layout},
                      {"engine", t.engine},

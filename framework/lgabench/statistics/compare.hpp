@@ -18,6 +18,12 @@ struct ComparedRow {
   Change change;      // B minus A
   double p_holm = 1;  // over all rows of the comparison
   int scenarios = 0;
+  /// Paired success (statistics/paired.hpp) where the arm's scenes are pairs; no part of the verdict.
+  struct Paired {
+    double a = 0, b = 0;
+    Change change;  // B minus A; p as it is
+  };
+  std::optional<Paired> paired{};
   EpisodePairs total;  // over all pairs of cells; first is A
   // Pairs of cells, and those of them where B is worse or better by McNemar's exact test, Holm's p within the row.
   int cells = 0, cells_worse = 0, cells_better = 0;

@@ -13,12 +13,16 @@ bool same_action(const Episode& first, const Episode& second) {
          first.done == second.done;
 }
 
-void EpisodePairs::add(const Episode& a, const Episode& b) {
+void EpisodePairs::count(bool first_won, bool second_won) {
   ++episodes;
-  won_first += a.success();
-  won_second += b.success();
-  only_first += a.success() && !b.success();
-  only_second += b.success() && !a.success();
+  won_first += first_won;
+  won_second += second_won;
+  only_first += first_won && !second_won;
+  only_second += second_won && !first_won;
+}
+
+void EpisodePairs::add(const Episode& a, const Episode& b) {
+  count(a.success(), b.success());
   same_actions = same_actions && same_action(a, b);
 }
 

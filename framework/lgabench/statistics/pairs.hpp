@@ -21,6 +21,8 @@ struct EpisodePairs {
   bool same_actions = true;             // same_action() in each
 
   void add(const Episode& first, const Episode& second);
+  /// A pair of which nothing but who succeeded is known.
+  void count(bool first_won, bool second_won);
   void add(const EpisodePairs& others);
   int agreed() const { return episodes - only_first - only_second; }
 };

@@ -31,6 +31,7 @@ using Episodes = std::vector<Episode>;
 // A row in the making: what each scenario's seeds add to it.
 struct Draft {
   Row row;
+  Cells cells;
   std::vector<std::vector<SeedResult>> scenarios;
   std::set<std::string> participants;
 };
@@ -55,6 +56,13 @@ std::optional<double> selected_otherwise(const CellResult& cell, const Episodes&
 std::string stream_name(const char* what, const Row& row) {
   return fmt::format("{}/{}/{}/{}/{}/{}/{}", what, row.scenario, row.layout, row.engine, row.method, row.demonstrations,
                      row.arm);
+}
+
+// Where two commands share a scene, or episodes have several steps.
+void estimate_pairs(Draft& draft) {
+  Row& row = draft.row;
+  row.paired = paired_success(draft.cells, row.arm, stream_name("report/paired", row));
+  row.course = course_of(draft.cells, row.arm, stream_name("report/course", row));
 }
 
 // Success, its change against the first arm, and their intervals, from the seeds.
@@ -99,10 +107,10 @@ void estimate(Draft& draft, const std::string& first_arm) {
 }
 
 // The row of `cells`: all seeds and participants of one (scenario, method, demonstrations).
-Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::string& arm,
-                     const std::string& first_arm) {
+Draft scenario_draft(const Cells& cells, const std::string& arm, const std::string& first_arm) {
   const CellResult& first = *cells.front();
   Draft draft;
+  draft.cells = cells;
   Row& row = draft.row;
   row.scenario = first.scenario;
   row.layout = first.layout;
@@ -147,6 +155,7 @@ Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::str
   if (first.asks == "network") row.marks.emplace_back("network");
   if (first.ambiguous.count(arm) != 0) row.marks.emplace_back("ambiguous");
   estimate(draft, first_arm);
+  estimate_pairs(draft);
   return draft;
 }
 
@@ -176,12 +185,14 @@ Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios, con
     for (const auto& [to, n] : draft->row.attribution) row.attribution[to] += n;
     complete = complete && !draft->row.marked("incomplete");
     mean.scenarios.push_back(draft->scenarios.front());
+    mean.cells.insert(mean.cells.end(), draft->cells.begin(), draft->cells.end());
     mean.participants.insert(draft->participants.begin(), draft->participants.end());
   }
   row.participants = static_cast<int>(mean.participants.size());
   if (!complete) row.marks.emplace_back("incomplete");
   if (drafts.front()->row.marked("network")) row.marks.emplace_back("network");
   estimate(mean, first_arm);
+  estimate_pairs(mean);
   return row;
 }
 
@@ -198,28 +209,31 @@ Json shift_json(const std::optional<Shift>& shift) {
 
 // The row as summary.json has it.
 Json row_json(const Row& row) {
-  return {{"scenario", row.scenario},
-          {"layout", row.layout},
-          {"engine", row.engine},
-          {"method", row.method},
-          {"method_kind", row.kind},
-          {"demonstrations", row.demonstrations},
-          {"arm", row.arm},
-          {"seeds", row.seeds},
-          {"participants", row.participants},
-          {"scenes", row.scenes},
-          {"episodes", row.episodes},
-          {"successes", row.successes},
-          {"success", row.success ? Json(*row.success) : Json()},
-          {"low", row.success ? Json(row.interval.low) : Json()},
-          {"high", row.success ? Json(row.interval.high) : Json()},
-          {"shift", shift_json(row.shift)},
-          {"failures", row.failures},
-          {"attribution", row.attribution},
-          {"inputs_seen", row.seen_share() ? Json(*row.seen_share()) : Json()},
-          {"n_error", row.n_error},
-          {"marks", row.marks},
-          {"phi", to_json(row.phi)}};
+  Json json{{"scenario", row.scenario},
+            {"layout", row.layout},
+            {"engine", row.engine},
+            {"method", row.method},
+            {"method_kind", row.kind},
+            {"demonstrations", row.demonstrations},
+            {"arm", row.arm},
+            {"seeds", row.seeds},
+            {"participants", row.participants},
+            {"scenes", row.scenes},
+            {"episodes", row.episodes},
+            {"successes", row.successes},
+            {"success", row.success ? Json(*row.success) : Json()},
+            {"low", row.success ? Json(row.interval.low) : Json()},
+            {"high", row.success ? Json(row.interval.high) : Json()},
+            {"shift", shift_json(row.shift)},
+            {"failures", row.failures},
+            {"attribution", row.attribution},
+            {"inputs_seen", row.seen_share() ? Json(*row.seen_share()) : Json()},
+            {"n_error", row.n_error},
+            {"marks", row.marks},
+            {"phi", to_json(row.phi)}};
+  if (row.paired) json["paired"] = to_json(*row.paired);
+  if (row.course) json["course"] = to_json(*row.course);
+  return json;
 }
 
 // What is below a reference row: a method that learned less than what always does the same thing has learned nothing,
@@ -263,8 +277,6 @@ std::optional<Nearness> nearness(const Table& table, const PaperValues& paper) {
   near.mean_distance /= near.points;
   return near;
 }
-
-using Cells = std::vector<const CellResult*>;
 
 Table make_table(const Cells& cells) {
   Table table;

@@ -9,6 +9,7 @@
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/statistics/curves.hpp>
+#include <lgabench/statistics/paired.hpp>
 #include <lgabench/statistics/paper.hpp>
 #include <lgabench/statistics/regret.hpp>
 #include <lgabench/statistics/results.hpp>
@@ -65,7 +66,10 @@ struct Row {
   std::map<std::string, int> attribution{{"abstraction", 0}, {"policy", 0}};  // failures attributed to each
   std::optional<Shift> shift;            // none in the first arm, nor where the arms give different commands
   int inputs_told = 0, inputs_seen = 0;  // episodes whose policy told whether its input stood in training; where it did
-  int n_error = 0;                       // episodes not played: the engine or the host failed
+  std::optional<PairedSuccess>
+      paired{};                    // where the arm's scenes are pairs; none in a scenario with one of the commands
+  std::optional<Course> course{};  // where commands say how objects are used
+  int n_error = 0;                 // episodes not played: the engine or the host failed
   std::vector<std::string> marks;
   std::vector<PhiOfCommand> phi;  // of each of the arm's commands for which a cell selected; none in mean rows
 

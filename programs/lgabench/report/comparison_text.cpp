@@ -40,6 +40,15 @@ std::string comparison_text(const RunComparison& comparison, bool each_phase) {
                            {row_name(r), r.layout, r.engine, std::to_string(r.demonstrations), r.arm,
                             fixed(r.success_a), fixed(r.success_b), change_text(r.change), p_text(r.p_holm),
                             fmt::format("{}/{} of {}", r.cells_worse, r.cells_better, r.cells), word_for(r)}});
+    Grid pairs;
+    pairs.caption = "Both commands of a pair right, B - A [95 % interval], p of this row alone";
+    pairs.heads = {"method", "layout", "engine", "n", "arm", "A", "B", "B - A", "p"};
+    for (const ComparedRow& r : comparison.rows)
+      if (const auto& paired = r.paired)
+        pairs.rows.push_back(
+            {{},
+             {row_name(r), r.layout, r.engine, std::to_string(r.demonstrations), r.arm, fixed(paired->a),
+              fixed(paired->b), change_text(paired->change), p_text(paired->change.p)}});
     Grid times;
     times.caption = "Seconds of a cell's phases, B - A [95 % interval of Student's t], Holm's p of Wilcoxon's test";
     times.heads = {"method", "layout", "engine", "phase", "A", "B", "B - A", "p", "cells"};
@@ -50,7 +59,9 @@ std::string comparison_text(const RunComparison& comparison, bool each_phase) {
            {display_name(t.method), t.layout, t.engine, t.phase.substr(0, t.phase.size() - 2), fixed(t.mean_a, 3),
             fixed(t.mean_b, 3), seconds_interval(t), p_text(t.p_holm), std::to_string(t.cells)}});
     }
-    text += terminal(rows) + '\n' + terminal(times) + '\n';
+    text += terminal(rows) + '\n';
+    if (!pairs.rows.empty()) text += terminal(pairs) + '\n';
+    text += terminal(times) + '\n';
   }
   for (const OtherScenes& o : comparison.other_scenes)
     text += fmt::format("{}, layout {}, engine {}, arm {}: other scenes ({}), not compared: {}\n", o.scenario, o.layout,

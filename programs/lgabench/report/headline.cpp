@@ -37,13 +37,13 @@ std::vector<std::string> most_compared(const std::vector<std::string>& methods, 
 }
 
 std::optional<Change> against_method(const Material& material, const Table& table, const std::string& first,
-                                     const std::string& other, const Column& column) {
+                                     const std::string& other, const Column& column, bool paired) {
   Field field;
   for (const CellResult& cell : material.run.cells)
     if (cell.layout == table.layout && cell.engine == table.engine && (cell.method == first || cell.method == other))
       field.add(cell);
   if (!field.find(first, column.demonstrations) || !field.find(other, column.demonstrations)) return {};
-  return measured_rows(field, "headline", first, other, column.arm, column.demonstrations).these.change;
+  return measured_rows(field, "headline", first, other, column.arm, column.demonstrations, paired).these.change;
 }
 
 // The reference row learns nothing: each policy is paired with the reference in the same scenes.
@@ -117,15 +117,17 @@ Spans headline(const Material& material, const AboutSuite& about) {
   if (methods.empty()) return {};
   const std::string& first = methods.front();
   const Row& row = *row_of(first);
+  const bool paired = row.paired.has_value();
   Spans spans{
-      {fmt::format(
-          "{}, {}{}: {} succeeds in ", table.title(mean_scenario), table.demonstrations_text(column->demonstrations),
-          table.arms.size() > 1 ? ", arm \"" + table.arm_head(column->arm) + '"' : "", material.styles.name(first))},
-      Span::number(fixed(*row.success), place_of(row, "success"), Emphasis::strong),
-      {" of the episodes"}};
+      {fmt::format("{}, {}{}: {} {} in ", table.title(mean_scenario), table.demonstrations_text(column->demonstrations),
+                   table.arms.size() > 1 ? ", arm \"" + table.arm_head(column->arm) + '"' : "",
+                   material.styles.name(first), paired ? "gets both commands of a pair right" : "succeeds")},
+      Span::number(fixed(paired ? row.paired->share : *row.success), place_of(row, paired ? "paired/share" : "success"),
+                   Emphasis::strong),
+      {paired ? " of the scenes" : " of the episodes"}};
   spans.front().text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(spans.front().text.front())));
   const auto steps = std::find_if(material.summary.steps.begin(), material.summary.steps.end(), [&](const Steps& one) {
-    return first == command_read && one.layout == table.layout && one.engine == table.engine &&
+    return !paired && first == command_read && one.layout == table.layout && one.engine == table.engine &&
            one.demonstrations == column->demonstrations;
   });
   bool any = steps != material.summary.steps.end();
@@ -140,8 +142,8 @@ Spans headline(const Material& material, const AboutSuite& about) {
       any = true;
     };
     for (const std::string& other : most_compared(methods, most_others))
-      add(against_method(material, table, first, other, *column), in_a_sentence(material.styles.name(other)));
-    add(against_random(material, table, first, *column), "the " + display_name(random_object));
+      add(against_method(material, table, first, other, *column, paired), in_a_sentence(material.styles.name(other)));
+    if (!paired) add(against_random(material, table, first, *column), "the " + display_name(random_object));
   }
   spans.emplace_back(any ? " (95 % intervals of the paired differences)." : ".");
   std::vector<std::string> verdicts;
@@ -198,10 +200,17 @@ std::size_t width_of(const std::string& text) {
   return widest;
 }
 
-std::string success_text(const Row& row, bool interval) {
-  if (!row.success) return "–";
-  return fixed(*row.success) +
-         (interval ? fmt::format(" [{}, {}]", fixed(row.interval.low), fixed(row.interval.high)) : "") +
+// What a row is compared by: its success, or where scenes are pairs that in both commands.
+std::optional<std::pair<double, Interval>> value_of(const Row& row, bool paired) {
+  if (paired) return row.paired ? std::optional(std::pair(row.paired->share, row.paired->interval)) : std::nullopt;
+  return row.success ? std::optional(std::pair(*row.success, row.interval)) : std::nullopt;
+}
+
+std::string value_text(const Row& row, bool paired, bool with_interval) {
+  const auto value = value_of(row, paired);
+  if (!value) return "–";
+  const auto& [share, interval] = *value;
+  return fixed(share) + (with_interval ? fmt::format(" [{}, {}]", fixed(interval.low), fixed(interval.high)) : "") +
          marks_text(row);
 }
 
@@ -210,6 +219,8 @@ struct Means {
   const Table& table;
   const Column& main;
   std::set<std::string> marks{};  // of the rows that are shown
+  bool paired = std::any_of(table.rows.begin(), table.rows.end(),
+                            [this](const Row& row) { return row.is_mean() && row.arm == main.arm && row.paired; });
 
   std::vector<Column> columns() const {
     std::vector<Column> all;
@@ -224,7 +235,7 @@ struct Means {
     const Row* row = table.find(column.arm, mean_scenario, id, column.demonstrations);
     if (!row) return {};
     marks.insert(row->marks.begin(), row->marks.end());
-    return success_text(*row, interval);
+    return value_text(*row, paired, interval);
   }
 
   // Over columns in which the row has a value.
@@ -232,10 +243,11 @@ struct Means {
     double sum = 0;
     int n = 0;
     for (const Column& column : columns())
-      if (const Row* row = table.find(column.arm, mean_scenario, id, column.demonstrations); row && row->success) {
-        sum += *row->success;
-        ++n;
-      }
+      if (const Row* row = table.find(column.arm, mean_scenario, id, column.demonstrations))
+        if (const auto value = value_of(*row, paired)) {
+          sum += value->first;
+          ++n;
+        }
     return n == 0 ? "–" : fixed(sum / n);
   }
 
@@ -243,8 +255,8 @@ struct Means {
     const std::vector<Column> all = columns();
     const bool one_arm = table.arms.size() == 1;
     Grid grid;
-    grid.caption =
-        fmt::format("Success, {}{}", table.title(mean_scenario), shown == Shown::rates ? "" : " [95 % interval]");
+    grid.caption = fmt::format("{}, {}{}", paired ? "Both commands of a pair right" : "Success",
+                               table.title(mean_scenario), shown == Shown::rates ? "" : " [95 % interval]");
     if (material.summary.tables.size() > 1) grid.caption += ", " + table.title();
     grid.heads = {one_arm ? "demonstrations" : table.demonstrations_text(main.demonstrations)};
     if (shown == Shown::main_and_mean)

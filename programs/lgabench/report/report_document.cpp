@@ -150,6 +150,7 @@ Document report_document(const Material& material) {
   const auto add = [&document](Section section) {
     if (!section.blocks.empty()) document.sections.push_back(std::move(section));
   };
+  add(pairs(material));
   add(steps(material));
   add(regret(material));
   for (Section& section : success(material)) add(std::move(section));

@@ -39,6 +39,7 @@ std::string success_title(const Material& material);
 Section what_was_run(const Material& material);
 std::vector<Section> success(const Material& material);  // one for each table of the summary
 Section steps(const Material& material);
+Section pairs(const Material& material);
 Section regret(const Material& material);
 Section perturbations(const Material& material);
 Section learning_curves(const Material& material);

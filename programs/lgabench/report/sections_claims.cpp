@@ -25,7 +25,9 @@ struct Placed {
   std::string place;
 };
 
-bool is_slope(const ClaimedDifference& d) { return d.unit != "success" && d.unit != "seconds"; }
+bool is_slope(const ClaimedDifference& d) {
+  return d.unit != "success" && d.unit != paired_unit && d.unit != "seconds";
+}
 
 // A row, with the columns that say which difference it is of.
 void add_row(Grid& grid, const MethodStyles& styles, const AboutSuite& about, const Placed& of) {
@@ -39,7 +41,8 @@ void add_row(Grid& grid, const MethodStyles& styles, const AboutSuite& about, co
       d.unit == "seconds" ? TableCell()
                           : TableCell(Span::number(std::to_string(d.demonstrations), of.place + "/demonstrations")));
   put(grid, "difference", 'l',
-      styles.name(d.above) + " − " + styles.name(d.below) + (is_slope(d) ? ", " + d.unit : ""));
+      styles.name(d.above) + " − " + styles.name(d.below) +
+          (is_slope(d) || d.unit == paired_unit ? ", " + d.unit : ""));
   grid.rows.back().cells.back().style = styles(d.above);
 }
 

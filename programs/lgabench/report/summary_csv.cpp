@@ -1,6 +1,7 @@
 // summary.csv and episodes.csv.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 #include <lgabench/core/environments.hpp>
@@ -23,6 +24,18 @@ std::string to_csv(const Summary& summary) {
         fmt::format("shift/{}", member));
   add("same_actions", "shift/same_actions");
   for (const char* member : {"inputs_seen", "n_error", "marks"}) add(member, member);
+  const auto any = [&summary](const auto& has) {
+    return std::any_of(summary.tables.begin(), summary.tables.end(),
+                       [&has](const Table& table) { return std::any_of(table.rows.begin(), table.rows.end(), has); });
+  };
+  if (any([](const Row& row) { return row.paired.has_value(); }))
+    for (const char* member : {"share", "low", "high", "scenes"})
+      add(fmt::format("paired_{}", member), fmt::format("paired/{}", member));
+  if (any([](const Row& row) { return row.course.has_value(); })) {
+    for (const char* member : {"progress", "too_early", "went_on"}) add(member, fmt::format("course/{}", member));
+    for (const char* member : {"first_take", "refusals", "takings"})
+      add(member, fmt::format("course/{}/share", member));
+  }
   for (const char* to : attributions) add(to, fmt::format("attribution/{}", to));
   std::set<std::string> found;
   for (const Table& table : summary.tables)
