@@ -72,6 +72,7 @@ TEST(Pairs, OfSixCommandsSaySomethingOfOthersAndOfFiveNothing) {
   for (int i = 0; i < 6; ++i) {
     all.push_back(told());
     all.back().scenario += std::to_string(i);
+    for (Episode& e : all.back().episodes["told"]) e.pair += std::to_string(i);
   }
   Cells cells;
   for (const CellResult& one : all) cells.push_back(&one);
