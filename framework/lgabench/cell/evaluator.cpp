@@ -9,6 +9,7 @@
 
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/core/turns.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench {
@@ -45,9 +46,20 @@ void note_brought(const Observation& seen, const Observation& given, const Obser
   }
 }
 
+// After a step: what it brought counts, and that it rightly said to be the last.
+Progress progress_of(const Scene& scene, const Observation& before, const StepResult& result) {
+  std::vector<Named> on_table;
+  for (const Instance& one : before.instances) on_table.push_back({one.object_type, one.texture});
+  const auto right = static_cast<int>(result.observation.brought.size()) + (result.is_success ? 1 : 0);
+  const auto before_it = static_cast<int>(before.brought.size());
+  return {right, std::max(before_it + takes_left(*scene.errand, on_table, before.brought) + 1,
+                          result.is_success ? right : right + 1)};
+}
+
 Episode play(Environment& environment, const TestScene& test, const Actor& actor) {
   const Scene& scene = test.scene;
   Episode episode{scene.arm, scene.index, scene.command, hex(scene.hash()), failure::abstraction_empty};
+  if (scene.pair) episode.pair = hex(scene.shared_hash());
   if (test.abstraction_empty) return episode;
   Observation observation = environment.reset(scene);
   if (test.view != View()) observation = environment.look(test.view);
@@ -62,6 +74,7 @@ Episode play(Environment& environment, const TestScene& test, const Actor& actor
           actor.act(environment, scene, perceived, step, environment.most_steps() == 1 ? nullptr : &given);
       StepResult result = environment.step(move.action);  // refuses one that is not executable()
       episode.failure = result.failure;
+      if (scene.errand) episode.progress = progress_of(scene, observation, result);
       if (episode.taken == 0) episode.taken = result.taken;
       episode.add(move.action.empty() ? Action() : as_stored(environment.action_space(), move.action));
       episode.input_seen = step == 0 || move.input_seen == false ? move.input_seen : episode.input_seen;

@@ -205,4 +205,16 @@ bool is_done(const Meaning& meaning, const std::vector<Named>& on_table, const s
   return sharing.is_fulfilled() || (brought.empty() && !sharing.can_be_fulfilled());
 }
 
+int takes_left(const Meaning& meaning, std::vector<Named> on_table, std::vector<Named> brought) {
+  int takes = 0;
+  while (!is_done(meaning, on_table, brought)) {
+    const std::vector<Named> next = wanted(meaning, on_table, brought);
+    if (next.empty()) break;
+    on_table.erase(std::find(on_table.begin(), on_table.end(), next.front()));
+    brought.push_back(next.front());
+    ++takes;
+  }
+  return takes;
+}
+
 }  // namespace lgabench

@@ -24,4 +24,7 @@ std::vector<Named> wanted(const Meaning& meaning, const std::vector<Named>& on_t
 /// never be fulfilled. @pre no `which`
 bool is_done(const Meaning& meaning, const std::vector<Named>& on_table, const std::vector<Named>& brought);
 
+/// How many takes are left until all is done, if the first of what is wanted is always taken. @pre no `which`
+int takes_left(const Meaning& meaning, std::vector<Named> on_table, std::vector<Named> brought);
+
 }  // namespace lgabench
