@@ -10,6 +10,7 @@
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
+#include <lgabench/core/meaning.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/random.hpp>
 
@@ -157,6 +158,14 @@ class InOrder final : public Environment {
   bool has_scene_ = false, over_ = false;
 };
 
+// The place to which all is brought is known in every step: it is read as nothing else, and nothing else as a place.
+void places_as_they_are(Observation& perceived, const Observation& seen) {
+  for (Instance& one : perceived.instances)
+    for (const Instance& true_one : seen.instances)
+      if (one.id == true_one.id && is_place(one.object_type) != is_place(true_one.object_type))
+        one.object_type = true_one.object_type;
+}
+
 }  // namespace
 
 std::unique_ptr<Environment> make_environment(const Scenario& scenario, std::unique_ptr<PhysicsWorld> world) {
@@ -195,6 +204,7 @@ Perception perception_of(const Scenario& scenario, const Arm& arm, std::optional
     };
     Observation perceived = imperfect_textualization(perceive ? perceive(seen, stream("perception")) : seen,
                                                      scenario.space, noise, stream("textualization"));
+    if (scene.errand) places_as_they_are(perceived, seen);
     for (const PerturbationAxis* axis : axes)
       perceived = axis->perceive(std::move(perceived), scenario, level,
                                  perturbation_stream(axis->id, scene, training_seed, step));

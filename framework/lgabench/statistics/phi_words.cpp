@@ -35,11 +35,18 @@ bool set_holds(const Json& set, const char* group, const std::string& name) {
          (names.is_array() && std::any_of(names.begin(), names.end(), [&](const Json& one) { return is(one, name); }));
 }
 
-bool is_more(const Json& meaning) { return meaning.is_object() && meaning.contains("sets"); }
+bool is_more(const Json& meaning) {
+  return meaning.is_object() && (meaning.contains("sets") || meaning.contains("turns"));
+}
 
 // Likewise of a meaning, of which any set may hold it.
 bool holds(const Json& meaning, const char* group, const std::string& name) {
-  if (!is_more(meaning) || !meaning.at("sets").is_array()) return set_holds(meaning, group, name);
+  if (meaning.is_object() && meaning.contains("turns") && meaning.at("turns").is_array()) {
+    const Json& turns = meaning.at("turns");
+    return std::any_of(turns.begin(), turns.end(), [&](const Json& turn) { return holds(turn, group, name); });
+  }
+  if (!is_more(meaning) || !meaning.contains("sets") || !meaning.at("sets").is_array())
+    return set_holds(meaning, group, name);
   const Json& sets = meaning.at("sets");
   return std::any_of(sets.begin(), sets.end(), [&](const Json& set) { return set_holds(set, group, name); });
 }

@@ -14,6 +14,7 @@
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/meaning.hpp>
 #include <lgabench/core/parallel.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -106,8 +107,10 @@ void read_training(const fs::path& file, CellResult& cell) {
 }
 
 void expect_selection(const JsonReader& selection) {
-  const JsonReader target = selection.at("target");
-  target.has("sets") ? target.at("sets").elements().size() : target.at("object_types").json().size();
+  if (const JsonReader target = selection.at("target"); target.has("turns") || target.has("sets"))
+    read_unchecked_meaning(target);
+  else
+    target.at("object_types");
   for (const char* text : {"provenance", "source", "asked_as"}) selection.at(text).string();
   constexpr double most = 1e15;  // of which a run may have many in a sum
   for (const char* number : {"lm_queries", "lm_tokens", "lm_seconds", "human_seconds"})

@@ -170,13 +170,22 @@ bool is_shipped_version(const std::string& id, const std::string& version, const
   });
 }
 
+std::set<std::string> failures_of(const Row& row) {
+  std::set<std::string> found;
+  for (const auto& cell : row)
+    for (const auto& arm : cell.second->episodes)
+      for (const Episode& episode : arm.second)
+        if (!episode.success()) found.insert(episode.failure);
+  return found;
+}
+
 Entry entry_of(const RunResults& run, const Installed& installed, const Catalogue& shipped, const Row& row,
                const Json& about, Reasons& reasons) {
   const Cell& first = row.begin()->second->configuration;
   Entry entry;
   entry.setting = installed.setting;
   entry.about = about;
-  entry.failures = failure_words();  // an entry's suite is one of lgabench's own
+  entry.failures = failure_words(failures_of(row));
   entry.identity.row = first.method;
   entry.identity.row.name = first.method.own_name();
   entry.identity.answers = first.answers;
