@@ -73,10 +73,16 @@ std::vector<FeatureSet> Labels::in(const FeatureSpace& space) const {
   std::vector<FeatureSet> sets;
   for (const std::string& type : space.object_types) {
     if (is_place(type)) continue;
-    FeatureSet set{{type}, {}};
+    std::vector<std::string> textures;
     for (const std::string& texture : space.textures)
-      if (belongs({type, texture})) set.textures.push_back(texture);
-    if (!set.textures.empty()) sets.push_back(std::move(set));
+      if (belongs({type, texture})) textures.push_back(texture);
+    if (textures.empty()) continue;
+    const auto same =
+        std::find_if(sets.begin(), sets.end(), [&](const FeatureSet& s) { return s.textures == textures; });
+    if (same != sets.end())
+      same->object_types.push_back(type);
+    else
+      sets.push_back({{type}, std::move(textures)});
   }
   if (sets.empty()) sets.emplace_back();
   return sets;

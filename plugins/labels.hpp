@@ -25,7 +25,7 @@ class Labels {
   /// Whether it scores as much as what was taken does: from the score on that tells what was taken from what was left
   /// with the fewest errors, both weighing alike.
   bool belongs(const Named& one) const { return score(one) >= least_; }
-  /// All that belongs, in the space's order: one set for each type. Of nothing that belongs, one empty set.
+  /// All that belongs, in the space's order: one set for each list of textures. Of nothing that belongs, one empty set.
   std::vector<FeatureSet> in(const FeatureSpace& space) const;
 
  private:

@@ -29,6 +29,7 @@ def of_class(scenario):
 
 def head(scenario, key, group):
     return {"id": key, "environment": "tabletop", "task": "errands", "feature_space": scenario["feature_space"], "may_stop": True,
+            "answers": {"recorded": "errands/claude"},
             "classes": [of_class(one) for one in [scenario] + [one for one in group if one is not scenario]],
             "train": {"as_method_asks": False}}
 

@@ -97,6 +97,9 @@ TEST(Labels, EachRuleTellsWhatWasTakenFromWhatWasLeft) {
   EXPECT_FALSE(pear(Labels::Rule::part, rare)) << "red was never taken, of fewer textures than types";
   EXPECT_TRUE(pear(Labels::Rule::bayes, {{"pear", "red"}, {"apple", "red"}}));
   EXPECT_EQ(Labels(Labels::Rule::counts, {}, {}, embedding).in({"mine", {}, {}}), std::vector<FeatureSet>(1));
+  const Labels fruit(Labels::Rule::counts, {{"apple", "red"}, {"pear", "blue"}}, left, embedding);
+  EXPECT_EQ(fruit.in(space), (std::vector<FeatureSet>{{{"apple", "pear"}, {"red", "blue"}}}))
+      << "a set for each list of textures";
 }
 
 // A picture with a square for each object, the pallet last.

@@ -82,8 +82,8 @@ TEST(Frames, that_are_malformed_are_refused_with_the_reason) {
     return ends.refusal();
   };
   EXPECT_SAYS(refusal_of("{\"phase\": \"the fixture's own\"}\n"), "its first bytes are not those of a frame");
-  EXPECT_SAYS(refusal_of("LGA1" + number(2 << 20) + number(0) + number(0)),
-              "a header of 2097152 bytes, at most 1048576");
+  EXPECT_SAYS(refusal_of("LGA1" + number(9 << 20) + number(0) + number(0)),
+              "a header of 9437184 bytes, at most 8388608");
   EXPECT_SAYS(refusal_of("LGA1" + number(2) + number((1 << 20) + 1) + number(0)),
               "a payload of 1048577 bytes, at most 1048576");
   std::string other = good;

@@ -14,7 +14,7 @@ namespace lgabench {
 
 /// Raised whenever a frame or an array changes its meaning.
 constexpr int protocol_version = 1;
-constexpr std::uint32_t most_header_bytes = 1 << 20, most_payload_bytes = 1 << 20;
+constexpr std::uint32_t most_header_bytes = 8 << 20, most_payload_bytes = 1 << 20;
 
 /// What the peer sent has another form than the protocol says.
 class Malformed : public InputError {
