@@ -14,13 +14,19 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 MEMBERS = "method", "demonstrations", "arm", "success", "low", "high", "episodes"
 
 
+def of_pairs(row):
+    """Where scenes are pairs, or episodes have several steps: both right, and how they went."""
+    paired = {name: value for name, value in row.get("paired", {}).items() if name != "by_commands"}
+    return {**({"paired": paired} if paired else {}), **({"course": row["course"]} if "course" in row else {})}
+
+
 def kept(run):
     """The file's value."""
     summary, about = (json.loads((run / f"{name}.json").read_text()) for name in ("summary", "run"))
     if summary["failed_cells"]:
         raise SystemExit(f"{run}: {len(summary['failed_cells'])} cells failed")
     command = re.sub(r" --(jobs|out) \S+", "", about["command"])
-    rows = [{name: row[name] for name in MEMBERS} for row in summary["rows"] if row["scenario"] == "(mean)"]
+    rows = [{**{name: row[name] for name in MEMBERS}, **of_pairs(row)} for row in summary["rows"] if row["scenario"] == "(mean)"]
     heard = [{"method": curve["method"], "demonstrations": curve["demonstrations"], "control": curve["control"]["took"],
               "levels": {level["name"]: {"took": level["took"], "success": level["success"],
                                          **({"use": level["use_of_language"]} if "use_of_language" in level else {})}
