@@ -132,6 +132,46 @@ def persons(run="persons"):
     return commands(run) + table(["row", "questions", *(f"{n} demonstration{'' if n == 1 else 's'}" for n in ns), *(f"{word} at {ns[-1]}" for word, _ in losses)], lines)
 
 
+ERRANDS = {"human+policy=point": "truth, asked anew at each step", "human": "truth, heat map learned", "errand+moment=planned": "truth, a plan made at the start",
+           "errand+moment=first": "truth, its first moment kept", "errand+how=all": "truth without how: all", "errand+how=two": "truth without how: two",
+           "errand+how=each": "key word: one of each", "errand+how=words": "key words: the most that words alone tell",
+           "lga+policy=point": "LGA, the paper's questions", "lga+meaning=structured+policy=point": "LGA, one question that may be answered with turns",
+           "errand+sets=part": "labels, told how", "errand+sets=part+shown_by=nearest": "labels of the nearest words, told how",
+           "errand+sets=bayes": "labels by Bayes, told how", "errand+sets=bayes+shown_by=nearest": "labels by Bayes of the nearest words, told how",
+           "errand+sets=part+how=all": "labels, deaf", "errand+readings=first": "truth, the first reading of a name", "errand+readings=majority": "truth, the majority of readings",
+           "gcbc_seg": "GCBC-SEG", "two_then_stops": "any two, then done", "stops_at_random": "done at random", "stops_at_once": "done at once",
+           "errand+how=shown": "how by Bayes from demonstrations (the ceiling)", "errand+how=habit": "habit: as many as were taken mostly"}
+# Rows of which it can be proved that they get no pair right in told.
+THEOREMS = "errand+moment=first", "errand+how=all", "errand+how=two", "lga+policy=point", "errand+sets=part+how=all", "two_then_stops", "stops_at_random", "stops_at_once"
+
+
+def both_right(row):
+    return f"{number(row['paired']['share'])} [{interval(row['paired'])}]"
+
+
+def errands():
+    """Paired success in each arm, and how episodes of the main one went."""
+    rows = {(row["method"], row["arm"]): row for row in RUNS["errands"]["rows"]}
+    lines = []
+    for row, name in ERRANDS.items():
+        told = rows.get((row, "told"))
+        if not told:
+            continue
+        course = told["course"]
+        lines.append([name, *(both_right(rows[row, arm]) for arm in ("told", "appears", "read")), number(course["first_take"]["share"]), number(course["progress"]),
+                      str(course["too_early"]), str(course["went_on"]), "theorem" if row in THEOREMS else ""])
+    return commands("errands") + table(["row", *(ABOUT["errands"]["arm_titles"][arm] for arm in ("told", "appears", "read")), "first take", "progress",
+                                        "done too early", "went on", "told 0"], lines, words=(0, 8))
+
+
+def errands_shown():
+    """Paired success where the words leave the how out, by demonstrations."""
+    rows = {(row["method"], row["demonstrations"]): row for row in RUNS["errands_shown"]["rows"]}
+    ns = sorted({n for _, n in rows if n})
+    lines = [[name, *(both_right(rows.get((row, n), rows.get((row, 0)))) for n in ns)] for row, name in ERRANDS.items() if any(of == row for of, _ in rows)]
+    return commands("errands_shown") + table(["row", *(f"{n} demonstration{'' if n == 1 else 's'}" for n in ns)], lines)
+
+
 PICTURED = {"human": "the truth", "lga": "LGA", "taken_features": "most demonstrated names", "gcbc_seg": "GCBC-SEG",
             "taken_colours": "colours of what was taken", "oracle": "Oracle", "random_object": "random object in view"}
 READ = "human", "lga", "taken_features"  # the others' masks need no names

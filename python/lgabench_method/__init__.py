@@ -59,6 +59,7 @@ class Command:
     utterance: str
     task: str
     second: Optional[SecondRole] = None
+    may_stop: bool = False  # whether it may say how objects are used in turn
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,8 @@ from lgabench_method import (Command, Demonstration, FeatureSet, FeatureSpace, H
 
 def command(json):
     second = json.get("second")
-    return Command(json["utterance"], json["task"], SecondRole(second["id"], second["phrase"]) if second else None)
+    return Command(json["utterance"], json["task"], SecondRole(second["id"], second["phrase"]) if second else None,
+                   json.get("may_stop", False))
 
 
 def command_json(value):

@@ -740,6 +740,29 @@ TEST_F(Chat, AsksForAMeaningUntilItCanBeRead) {
   EXPECT_EQ(mean(false), asked) << "from the cassette";
 }
 
+TEST_F(Chat, AsksHowObjectsAreUsedWhereThatMatters) {
+  Server server([](int, const httplib::Request& request, httplib::Response& response) {
+    const bool asks = request.body.find("only_if_nothing") != std::string::npos;
+    response.set_content(
+        completion(
+            asks ? R"(Final answer: {"turns": [{"sets": [{"object_types": ["heart"], "textures": "ALL"}], "take": 2, )"
+                   R"("same": ["texture"]}]})"
+                 : R"(Final answer: {"object_types": ["heart"], "textures": "ALL"})"),
+        "application/json");
+    return true;
+  });
+  Cassette cassette(tape());
+  OpenAiClient client(server.options());
+  ChatLanguageModel model(cassette, &client, {"m"});
+  const auto turns = [&](bool may_stop) {
+    Command asked = command;
+    asked.may_stop = may_stop;
+    return select_meaning(asked, space, model).target.turns.size();
+  };
+  EXPECT_EQ(turns(false), 0U);
+  EXPECT_EQ(turns(true), 1U);
+}
+
 TEST_F(Chat, IsEmptyWhereNoMeaningCanBeRead) {
   Server server([](int, const httplib::Request&, httplib::Response& response) {
     response.set_content(completion("Final answer: the heart"), "application/json");

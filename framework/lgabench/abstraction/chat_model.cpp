@@ -268,9 +268,10 @@ auto ChatLanguageModel::read_or_empty(Ask&& ask) const -> decltype(ask()) {
 }
 
 Meaning ChatLanguageModel::mean(const Command& command, const FeatureSpace& space) {
+  const PromptTemplate& asked = command.may_stop ? of_turns_ : of_meaning_;
   return read_or_empty([&] {
-    return asked_until_read(request_in_one(of_meaning_, messages_of(of_meaning_.fill(command, space)), "what it means"),
-                            of_meaning_, command, asks_about(command, space), json_again,
+    return asked_until_read(request_in_one(asked, messages_of(asked.fill(command, space)), "what it means"), asked,
+                            command, asks_about(command, space), json_again,
                             [&space](const std::string& said) { return meaning_in(said, space); });
   });
 }

@@ -127,7 +127,7 @@ class ChatLanguageModel : public LanguageModel {
   ChatClient* client_;
   ChatOptions options_;
   AskedModel asked_model_;
-  PromptTemplate template_, of_meaning_{"meaning.txt"}, of_hypotheses_{"hypotheses.txt"};
+  PromptTemplate template_, of_meaning_{"meaning.txt"}, of_turns_{"turns.txt"}, of_hypotheses_{"hypotheses.txt"};
   int asked_ = 0, without_answer_ = 0;
   struct Reading {
     bool any = false;

@@ -14,7 +14,8 @@ struct Prompt {
 
 /// A template of the data directory's prompts/, whose version is the file's SHA-256. selection.txt: what the paper's
 /// prompt asks (appendix, "Full Prompt"), in other words, and of the second set that the task has. meaning.txt: what a
-/// command means, in one question. hypotheses.txt: which unstated preferences there may be, likewise.
+/// command means, in one question; turns.txt: the same where objects are used in turn. hypotheses.txt: which unstated
+/// preferences there may be, likewise.
 class PromptTemplate {
  public:
   /// @throws InputError where the file is missing or lacks a part.

@@ -81,7 +81,7 @@ struct Scenario {
   Json json;              // as read, with what the plugins' axes declare: goes into a cell's configuration whole
 
   /// Command number `i` as a method is given it. @pre 0 <= i < commands.size()
-  Command command(int i) const { return {commands[static_cast<std::size_t>(i)].utterance, task, second}; }
+  Command command(int i) const { return {commands[static_cast<std::size_t>(i)].utterance, task, second, may_stop}; }
   std::vector<std::string> utterances() const;  // of all commands
   /// @throws InputError for a test arm that the scenario lacks.
   const Arm& arm(const std::string& name) const;

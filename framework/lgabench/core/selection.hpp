@@ -44,6 +44,7 @@ struct Command {
   std::string utterance;
   std::string task;                                 // an id of the environment's list
   std::optional<SecondRole> second = std::nullopt;  // what it speaks of beside the target; none for most tasks
+  bool may_stop = false;  // whether it may say how objects are used in turn (Scenario::may_stop)
 };
 
 /// The features of a task's second set.

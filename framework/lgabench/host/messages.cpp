@@ -18,6 +18,7 @@ void fields(Command& command, Fields& field) {
   field("utterance", command.utterance);
   field("task", command.task);
   field("second", command.second, when(command.second.has_value()));
+  field("may_stop", command.may_stop, when(command.may_stop));
 }
 
 void fields(FeatureSpace& space, Fields& field) {
