@@ -93,7 +93,7 @@ void check_fingerprint(const std::string& fingerprint) {
       differences.push_back(fmt::format("{} \"{}\" (this program: \"{}\")", key, theirs[key], our));
   if (differences.empty()) return;
   const auto same = [&](const char* key) { return theirs[key] == ours[key]; };
-  const char* what_to_do = !same("SDK") ? ": build it again with this lgabench's package (docs/from-0.3-to-0.4.md)"
+  const char* what_to_do = !same("SDK") ? ": build it again with this lgabench's package (docs/from-0.4-to-0.5.md)"
                            : !same("string ABI")
                                ? ": build it without -D_GLIBCXX_USE_CXX11_ABI=0, which older builds of LibTorch add"
                            : !same("iterators") ? ": build it without -D_GLIBCXX_DEBUG"
