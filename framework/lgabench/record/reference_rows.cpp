@@ -74,7 +74,7 @@ const std::vector<ReferenceRow>& reference_rows() {
        {3, 2, 1, 2}},
       {"stops_at_random",
        "stops at random",
-       "At each step with odds of .3 nothing is left to do, else a visible object, drawn at random",
+       "At each step with odds of 0.3 nothing is left to do, else a visible object, drawn at random",
        !learns,
        !in_every_suite,
        {7, 3, 1, 3}}};
