@@ -3,6 +3,7 @@
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/perturbations.hpp>
+#include <lgabench/leaderboard/units.hpp>
 #include <lgabench/statistics/curves.hpp>
 #include <lgabench/statistics/statistics.hpp>
 
@@ -29,7 +30,7 @@ std::map<std::string, ArmWeights> controls(const Setting& setting) {
 // Of the entry's success in each scenario that has one, weighted by arm, the mean.
 double mean_of(const Entry& entry, const std::map<std::string, ArmWeights>& by_scenario) {
   std::map<std::string, std::vector<double>> rates;
-  for (const PlayedCell& cell : entry.cells) {
+  for (const PlayedCell& cell : Units(entry)) {
     const auto weights = by_scenario.find(cell.place.scenario);
     if (weights == by_scenario.end()) continue;
     double rate = 0;

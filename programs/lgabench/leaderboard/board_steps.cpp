@@ -9,6 +9,7 @@
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/leaderboard/titles.hpp>
+#include <lgabench/leaderboard/units.hpp>
 #include <lgabench/statistics/names.hpp>
 
 namespace lgabench::leaderboard {
@@ -57,6 +58,10 @@ bool lacks_any(const StageRows& rows) {
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (!rows[i] && stages[i].needed && i != 1) return true;
   return !rows[1] && !rows[2];
+}
+
+std::string success_of(const BoardSteps& steps) {
+  return statistics::capital(success_word(steps.played.front().entry->setting));
 }
 
 // The success of the best row that is not told the truth, in that column.
@@ -121,8 +126,8 @@ document::Grid steps_grid(const BoardSteps& steps, const std::string& suite, con
   document::Grid grid;
   grid.name = name;
   grid.caption =
-      fmt::format("Success in {}, {} scenarios, {} demonstrations, and what each row adds to the one above it",
-                  Titles(suite).arm(steps.column.arm), steps.scenarios, steps.column.demonstrations);
+      fmt::format("{} in {}, {} scenarios, {} demonstrations, and what each row adds to the one above it",
+                  success_of(steps), Titles(suite).arm(steps.column.arm), steps.scenarios, steps.column.demonstrations);
   for (std::size_t i = 0; i < steps.played.size(); ++i) {
     const BoardSteps::Played& one = steps.played[i];
     grid.rows.emplace_back();
@@ -151,9 +156,9 @@ document::Grid curve_grid(const std::vector<BoardSteps>& curve, const std::strin
   document::Grid grid;
   grid.name = name;
   grid.caption = fmt::format(
-      "Success in {} after so many demonstrations, {} scenarios; brackets: 95 % intervals over other "
+      "{} in {} after so many demonstrations, {} scenarios; brackets: 95 % intervals over other "
       "scenarios too",
-      Titles(suite).arm(curve.front().column.arm), curve.front().scenarios);
+      success_of(curve.front()), Titles(suite).arm(curve.front().column.arm), curve.front().scenarios);
   const auto added = [](const statistics::Step& step) {
     return document::Span::number(
         fmt::format("{} {}", signed_text(step.difference), statistics::signed_interval(step.over_commands)));

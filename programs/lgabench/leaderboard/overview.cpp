@@ -10,6 +10,7 @@
 
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/leaderboard/titles.hpp>
+#include <lgabench/leaderboard/units.hpp>
 #include <lgabench/statistics/about_suite.hpp>
 
 namespace lgabench::leaderboard {
@@ -88,6 +89,7 @@ std::optional<Grid> overview_grid(const Suites& suites, Ranking ranking) {
       if (is_column(table, ranking)) {
         Span head(Titles(suite).suite());
         head.title = statistics::about_suite(suite).question;
+        if (table.setting.paired()) head.title += " " + words_of_success(table.setting);
         grid.heads.emplace_back(std::move(head));
         for (const NamedStanding& s : table.standings) {
           if (!s.entry->identity.conditions.none()) continue;  // a row of its suite's page alone
@@ -145,6 +147,8 @@ Section how_to_enter() {
 }
 
 Document overview(const Suites& suites) {
+  const bool paired =
+      std::any_of(suites.begin(), suites.end(), [](const auto& suite) { return is_paired(suite.second); });
   Document document;
   document.title = "lgabench leaderboard";
   document.description =
@@ -158,10 +162,11 @@ Document overview(const Suites& suites) {
     if (!grid) continue;
     Section section{section_of(ranking), statistics::capital(to_string(ranking))};
     section.add<Paragraph>(
-        reading, {{words_of(ranking) + " The mean is that of rows which are in every suite of the table; a suite of "
-                                       "perturbed scenes enters with its area. A row that lacks suites stands where "
-                                       "its success in the others puts it; rows of less than half of "
-                                       "the suites are shown on request."}});
+        reading,
+        {{fmt::format("{} The mean is that of rows which are in every suite of the table; a suite of perturbed scenes "
+                      "enters with its area{}. A row that lacks suites stands where its success in the others puts it; "
+                      "rows of less than half of the suites are shown on request.",
+                      words_of(ranking), paired ? ", one of paired scenes with its paired success" : "")}});
     section.add<Grid>(reading, std::move(*grid));
     document.sections.push_back(std::move(section));
   }

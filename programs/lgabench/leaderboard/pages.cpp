@@ -8,6 +8,7 @@
 #include <lgabench/document/writers.hpp>
 #include <lgabench/leaderboard/overview.hpp>
 #include <lgabench/leaderboard/titles.hpp>
+#include <lgabench/leaderboard/units.hpp>
 #include <lgabench/statistics/about_suite.hpp>
 #include <lgabench/statistics/names.hpp>
 
@@ -34,7 +35,7 @@ Grid short_grid(const NamedTable& table) {
     put(grid, "rank", 'r', rank_span(s));
     put(grid, "method", 'l', Span(s.label));
     put(grid, "policy", 'l', Span(s.policy));
-    put(grid, "success", 'r', Span::number(score_text(s)));
+    put(grid, success_word(table.setting), 'r', Span::number(score_text(s)));
     if (s.below_random) grid.rows.back().cells.back().spans.push_back(below_random_mark());
     put(grid, "known", 'l', Span(tier_and_marks(s)));
     put(grid, "by", 'l', by_span(*s.entry));
@@ -86,31 +87,51 @@ std::string csv_line_of(const Conditions& conditions, std::string std::pair<std:
 
 std::string csv_of(const Suites& suites) {
   using Column = std::pair<std::string, std::string>;
+  const bool paired =
+      std::any_of(suites.begin(), suites.end(), [](const auto& suite) { return is_paired(suite.second); });
+  std::vector<std::string> heads{"demonstrations", "ranking",      "rank",       "success", "low",        "high",
+                                 "episodes",       "failed_cells", "precision",  "recall",  "lm_queries", "lm_tokens",
+                                 "learn_s",        "tier",         "not_ranked", "by"};
+  if (paired) heads.insert(heads.end(), {"paired_share", "paired_low", "paired_high"});
   std::string text = csv_line_of(
       {}, &Column::first,
-      {"suite", "preset", "preset_hash", "scene_seed", "id", "method", "name", "version", "engine", "answers"},
-      {"demonstrations", "ranking", "rank", "success", "low", "high", "episodes", "failed_cells", "precision", "recall",
-       "lm_queries", "lm_tokens", "learn_s", "tier", "not_ranked", "by"});
+      {"suite", "preset", "preset_hash", "scene_seed", "id", "method", "name", "version", "engine", "answers"}, heads);
   for (const auto& suite : suites)
     for (const NamedTable& table : suite.second)
       for (const NamedStanding& s : table.standings) {
         const Identity& identity = s.entry->identity;
-        const auto line = [&](const std::string& n, double success, bool all) {
+        // `share`: what ranks the row, of its episodes or of its pairs; `success` is always that of episodes.
+        const auto line = [&](const std::string& n, double success, double share, bool all) {
           const auto when_all = [all](const std::string& value) { return all ? value : std::string(); };
-          text += csv_line_of(
-              identity.conditions, &Column::second,
-              {table.setting.suite, table.setting.preset, identity.preset_sha256.substr(0, 8),
-               std::to_string(identity.scene_seed), s.entry->id(), identity.row.own_name(), display_name(s.name),
-               identity.row.version, identity.engine, to_string(identity.answers)},
-              {n, to_string(table.ranking), when_all(s.rank ? std::to_string(*s.rank) : ""), number(success),
-               when_all(number(s.interval.low)), when_all(number(s.interval.high)),
-               when_all(std::to_string(s.episodes)), when_all(std::to_string(s.failed_cells)),
-               when_all(s.precision ? number(*s.precision) : ""), when_all(s.recall ? number(*s.recall) : ""),
-               when_all(number(s.lm_queries)), when_all(number(s.lm_tokens)), when_all(number(s.learn_s)),
-               when_all(to_string(s.entry->tier())), when_all(s.not_ranked), when_all(s.entry->about.at("by"))});
+          const std::string low = when_all(number(s.interval.low)), high = when_all(number(s.interval.high));
+          std::vector<std::string> cells{n,
+                                         to_string(table.ranking),
+                                         when_all(s.rank ? std::to_string(*s.rank) : ""),
+                                         number(success),
+                                         s.each ? "" : low,
+                                         s.each ? "" : high,
+                                         when_all(std::to_string(s.episodes)),
+                                         when_all(std::to_string(s.failed_cells)),
+                                         when_all(s.precision ? number(*s.precision) : ""),
+                                         when_all(s.recall ? number(*s.recall) : ""),
+                                         when_all(number(s.lm_queries)),
+                                         when_all(number(s.lm_tokens)),
+                                         when_all(number(s.learn_s)),
+                                         when_all(to_string(s.entry->tier())),
+                                         when_all(s.not_ranked),
+                                         when_all(s.entry->about.at("by"))};
+          if (s.each) cells.insert(cells.end(), {number(share), low, high});
+          cells.resize(heads.size());
+          text +=
+              csv_line_of(identity.conditions, &Column::second,
+                          {table.setting.suite, table.setting.preset, identity.preset_sha256.substr(0, 8),
+                           std::to_string(identity.scene_seed), s.entry->id(), identity.row.own_name(),
+                           display_name(s.name), identity.row.version, identity.engine, to_string(identity.answers)},
+                          cells);
         };
-        line("all", s.score, true);
-        for (const auto& [n, rate] : s.at) line(std::to_string(n), rate, false);
+        const Means& of_episodes = s.each ? *s.each : s;
+        line("all", of_episodes.score, s.score, true);
+        for (const auto& [n, rate] : s.at) line(std::to_string(n), of_episodes.at.at(n), rate, false);
       }
   return text;
 }

@@ -14,6 +14,7 @@
 #include <lgabench/leaderboard/answer_score.hpp>
 #include <lgabench/leaderboard/fresh_commands.hpp>
 #include <lgabench/leaderboard/played_cell.hpp>
+#include <lgabench/leaderboard/units.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 
 namespace lgabench::leaderboard {
@@ -170,9 +171,11 @@ Json played_fresh(const Entry& entry, const std::vector<std::size_t>& chosen, co
   int episodes = 0;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     keys.push_back(entry.cells[chosen[i]].key);
-    Json& cell = successes.emplace_back(Json::object());
-    for (const auto& [arm, letters] : now[i].outcomes) cell[arm] = lgabench::successes(letters);
     episodes += now[i].episodes();
+  }
+  for (const PlayedCell& one : Units(entry.setting, now)) {
+    Json& cell = successes.emplace_back(Json::object());
+    for (const auto& [arm, letters] : one.outcomes) cell[arm] = lgabench::successes(letters);
   }
   Json line{{"kind", "fresh"}, {"cells", keys},        {"bit_identical", 0},
             {"flips", 0},      {"episodes", episodes}, {"successes", successes}};

@@ -6,6 +6,7 @@
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/leaderboard/areas.hpp>
 #include <lgabench/leaderboard/titles.hpp>
+#include <lgabench/leaderboard/units.hpp>
 #include <lgabench/statistics/about_suite.hpp>
 #include <lgabench/statistics/bootstrap.hpp>
 
@@ -62,10 +63,11 @@ std::vector<std::string> with_intervals(const NamedTable& table, const std::stri
 Grid success_grid(const NamedTable& table, const std::vector<std::string>& arms, const std::string& main, int n) {
   const Titles titles(table.setting.suite);
   const std::vector<int>& numbers = table.setting.demonstrations;
+  const std::string success = statistics::capital(success_word(table.setting));
   const bool by_number = numbers.size() > 1 || arms.size() == 1;
   Grid grid = grid_of(table, by_number ? "_demonstrations" : "_arms",
-                      by_number ? fmt::format("Success in {}, by demonstrations", titles.arm(main))
-                                : fmt::format("Success in every arm, {} demonstration{}", n, n == 1 ? "" : "s"));
+                      by_number ? fmt::format("{} in {}, by demonstrations", success, titles.arm(main))
+                                : fmt::format("{} in every arm, {} demonstration{}", success, n, n == 1 ? "" : "s"));
   for (const NamedStanding& s : table.standings) add_named_row(grid, s);
   const auto add_column = [&](const std::string& head, const std::vector<std::string>& texts) {
     grid.heads.emplace_back(head);
@@ -135,7 +137,8 @@ Grid all_steps_grid(const Suites& suites) {
       if (!steps || table.track.kind != Track::abstraction) continue;
       Grid::Row row{
           {},
-          {Span::link(titles.suite(), "results/" + suite + ".md"), Span(titles.arm(steps->column.arm)),
+          {Span::link(titles.suite(), "results/" + suite + ".md"),
+           Span(titles.arm(steps->column.arm) + (table.setting.paired() ? ", paired success" : "")),
            Span::number(std::to_string(steps->scenarios)), Span::number(std::to_string(steps->column.demonstrations))}};
       const auto success = [&](const BoardSteps::Played* one) {
         row.cells.push_back(one ? document::TableCell(Span::number(fixed(one->success))) : "–");

@@ -5,8 +5,10 @@
 
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/leaderboard/suite_page.hpp>
+#include <lgabench/leaderboard/units.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/record/reference_rows.hpp>
+#include <lgabench/statistics/about_suite.hpp>
 #include <lgabench/statistics/tables.hpp>
 
 namespace lgabench::leaderboard {
@@ -61,6 +63,21 @@ Span source_span(const Entry& entry) {
   return span;
 }
 
+bool is_paired(const std::vector<NamedTable>& tables) {
+  return std::any_of(tables.begin(), tables.end(), [](const NamedTable& table) { return table.setting.paired(); });
+}
+
+std::string what_was_played(const Setting& setting) {
+  const auto presets = statistics::about_suite(setting.suite).presets;
+  const auto found = presets.find(setting.preset);
+  return fmt::format(
+      "{}{} scenarios, {} demonstrations, {} training seed{}, {} test scenes of each arm and {}; scene seed {}.{}",
+      found == presets.end() ? "" : found->second + " ", setting.scenarios.size(),
+      fmt::join(setting.demonstrations, ", "), setting.seeds.size(), setting.seeds.size() == 1 ? "" : "s",
+      setting.episodes, setting.test_scenes == TestScenes::per_seed ? "training seed" : "scenario", setting.scene_seed,
+      setting.paired() ? " " + words_of_success(setting) : "");
+}
+
 std::string rank_text(const Standing& standing) { return standing.rank ? std::to_string(*standing.rank) : "–"; }
 
 Span rank_span(const Standing& standing) {
@@ -105,7 +122,7 @@ std::optional<Grid> waiting_grid(const NamedTable& table) {
     add_row(grid, s);
     put(grid, "not yet replayed", 'l', Span(s.label));
     put(grid, "policy", 'l', Span(s.policy));
-    put(grid, "claimed success", 'r', Span::number(score_text(s.score)));
+    put(grid, "claimed " + success_word(table.setting), 'r', Span::number(score_text(s.score)));
     put(grid, "known", 'l', Span(tier_and_marks(s)));
     put(grid, "by", 'l', by_span(*s.entry));
     put(grid, "id", 'l', id_span(*s.entry));

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
+#include <lgabench/abstraction/scenes.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/leaderboard/fields.hpp>
 
@@ -19,6 +22,47 @@ void expect_name(const JsonReader& reader) {
       !name.empty() && name.size() <= 100 &&
       name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") == std::string::npos;
   if (!plain) reader.fail("letters, digits and _");
+}
+
+// A scenario's pair is mutual, and whole.
+void expect_pair(const JsonReader& scenario, const Setting& setting) {
+  if (!scenario.has("pair")) {
+    if (setting.paired()) scenario.fail("a \"pair\", as other scenarios have one");
+    return;
+  }
+  const std::string id = scenario.at("id").string(), other = scenario.at("pair").string();
+  const auto is_other = [&](const Setting::Scenario& one) {
+    return one.id == other && one.pair == id && one.arms == setting.scenario(id).arms;
+  };
+  if (!setting.paired() || std::none_of(setting.scenarios.begin(), setting.scenarios.end(), is_other))
+    scenario.at("pair").fail("a scenario with the same arms, whose \"pair\" is this one");
+  if (other == id && setting.episodes < 2) scenario.at("pair").fail("at least 2 episodes");
+}
+
+// Finds whose scenes come in pairs; leaves it where some scenario's do not.
+void add_pairs(const std::vector<Scenario>& scenarios, Setting& setting) {
+  std::map<std::uint64_t, std::size_t> firsts;  // by their first scene, without its command
+  std::vector<std::string> pairs(scenarios.size());
+  for (std::size_t i = 0; i < scenarios.size(); ++i) {
+    if (!scenarios[i].may_stop || setting.scenarios[i].arms.empty())
+      return;  // a pair's commands differ in how objects are used, until nothing is left to do
+    const auto scene = [&](int index) {
+      return test_scene(scenarios[i], setting.layouts.front(), setting.scenarios[i].arms.front(), setting.scene_seed,
+                        index);
+    };
+    const Scene first = scene(0);
+    if (!first.pair) return;
+    const std::uint64_t hash = first.shared_hash();
+    const auto [found, is_new] = firsts.emplace(hash, i);
+    if (setting.episodes > 1 && scene(1).shared_hash() == hash) {
+      pairs[i] = setting.scenarios[i].id;
+    } else if (!is_new && pairs[found->second].empty()) {
+      pairs[i] = setting.scenarios[found->second].id;
+      pairs[found->second] = setting.scenarios[i].id;
+    }
+  }
+  if (contains(pairs, "")) return;
+  for (std::size_t i = 0; i < pairs.size(); ++i) setting.scenarios[i].pair = pairs[i];
 }
 
 }  // namespace
@@ -46,6 +90,7 @@ static void fields(Setting::Scenario& scenario, Fields& field) {
   field("id", scenario.id);
   field("sha256", scenario.sha256);
   field("arms", scenario.arms);
+  field("pair", scenario.pair, when(!scenario.pair.empty()));
 }
 
 void fields(Setting& setting, Fields& field) {
@@ -69,6 +114,7 @@ Setting read_setting(const JsonReader& reader) {
     expect_name(scenario.at("id"));
     for (const JsonReader& arm : scenario.at("arms").elements()) expect_name(arm);
     if (scenario.at("arms").json().empty()) scenario.at("arms").fail("at least one arm");
+    expect_pair(scenario, setting);
   }
   for (const JsonReader& layout : reader.at("layouts").elements()) expect_name(layout);
   for (const char* list : {"scenarios", "layouts", "demonstrations", "seeds"})
@@ -111,14 +157,16 @@ Installed installed_setting(const std::string& suite, const std::string& preset)
   setting = {
       installed.suite.id, preset,           {}, design.layouts, design.demonstrations, design.seeds, design.episodes,
       design.test_scenes, design.scene_seed};
+  std::vector<Scenario> scenarios;
   for (const std::string& id : suite_scenario_ids(installed.suite, design)) {
-    const Scenario scenario = suite_scenario(installed.suite, id, Truth::released, &design);
+    const Scenario& scenario = scenarios.emplace_back(suite_scenario(installed.suite, id, Truth::released, &design));
     Setting::Scenario& one = setting.scenarios.emplace_back();
     one.id = id;
     one.sha256 = sha256(canonical(scenario.json));
     for (const Arm& arm : scenario.tests)
       if (!scenario.is_ambiguous(arm.id)) one.arms.push_back(arm.id);
   }
+  add_pairs(scenarios, setting);
   return installed;
 }
 

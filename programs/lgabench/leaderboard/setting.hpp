@@ -33,6 +33,10 @@ struct Setting {
   struct Scenario {
     std::string id, sha256;  // of the scenario with the suite's arms, as canonical JSON
     std::vector<std::string> arms;
+    /// Where scenes come in pairs that differ in the command alone, the scenario that has the other scene of each:
+    /// scene k there is the other of scene k here; where it is this one, scenes 2k and 2k + 1 are a pair. "" where they
+    /// do not.
+    std::string pair{};
   };
   std::string suite, preset;
   std::vector<Scenario> scenarios;
@@ -49,6 +53,8 @@ struct Setting {
   const Scenario& scenario(const std::string& id) const;
   /// A row's cells: those of a row that learns, or of a reference row that does not (harness/expand.hpp).
   std::vector<Place> places(bool learns) const;
+  /// Whether scenes come in pairs, in every scenario or in none.
+  bool paired() const { return !scenarios.empty() && !scenarios.front().pair.empty(); }
   /// Whether all training seeds play the same scenes.
   bool shared_scenes() const { return test_scenes == TestScenes::shared || seeds.size() == 1; }
 };

@@ -9,6 +9,7 @@
 
 #include <lgabench/abstraction/quality.hpp>
 #include <lgabench/leaderboard/areas.hpp>
+#include <lgabench/leaderboard/units.hpp>
 #include <lgabench/record/reference_rows.hpp>
 #include <lgabench/statistics/bootstrap.hpp>
 #include <lgabench/statistics/names.hpp>
@@ -32,10 +33,10 @@ Rates rates_of(const Entry& entry, const std::string& only_arm, int only_demonst
   const Setting& setting = entry.setting;
   const WeightsOfScenarios by_scenario = weights_in(setting);
   std::map<std::pair<std::string, std::string>, std::map<std::uint64_t, std::vector<std::vector<double>>>> by_unit;
-  for (const PlayedCell& cell : entry.cells) {
+  for (const PlayedCell& cell : Units(entry)) {
     const int n = cell.place.demonstrations;
     if (!only_arm.empty() && ((n != 0 && n != only_demonstrations) || cell.outcomes.count(only_arm) == 0)) continue;
-    std::vector<double> scenes(static_cast<std::size_t>(setting.episodes));
+    std::vector<double> scenes(cell.outcomes.begin()->second.size());
     const ArmWeights& weights = by_scenario.at(cell.place.scenario);
     for (const auto& [arm, letters] : cell.outcomes) {
       const auto found = weights.find(arm);
@@ -51,13 +52,13 @@ Rates rates_of(const Entry& entry, const std::string& only_arm, int only_demonst
   for (const Setting::Scenario& scenario : setting.scenarios)
     for (const std::string& layout : setting.layouts) {
       const auto played = by_unit.find({scenario.id, layout});
-      if (played == by_unit.end()) continue;  // a scenario without the arm
+      if (played == by_unit.end()) continue;  // a scenario without the arm, or the second of a pair
       const auto& by_seed = played->second;
       auto& unit = rates.emplace_back();
       for (const std::uint64_t seed : setting.seeds) {
         const auto found = by_seed.find(seed);  // one that learns nothing plays shared scenes once, for all seeds
         const auto& cells = found == by_seed.end() ? by_seed.begin()->second : found->second;
-        std::vector<double>& scenes = unit.emplace_back(static_cast<std::size_t>(setting.episodes));
+        std::vector<double>& scenes = unit.emplace_back(cells.front().size());
         for (const std::vector<double>& cell : cells)
           for (std::size_t i = 0; i < scenes.size(); ++i) scenes[i] += cell[i] / static_cast<double>(cells.size());
       }
@@ -67,35 +68,44 @@ Rates rates_of(const Entry& entry, const std::string& only_arm, int only_demonst
 
 namespace {
 
-void add_rates(Standing& standing) {
-  const Entry& entry = *standing.entry;
-  const WeightsOfScenarios weights = weights_in(entry.setting);
+Means means_of(const Setting& setting, const std::vector<PlayedCell>& cells) {
+  const WeightsOfScenarios weights = weights_in(setting);
+  Means means;
   std::map<std::string, std::vector<double>> by_scenario;
   std::map<int, std::map<std::string, std::vector<double>>> at;
   std::map<std::string, std::map<std::string, std::vector<double>>> in_arm;
-  for (const PlayedCell& cell : entry.cells) {
+  for (const PlayedCell& cell : cells) {
     double rate = static_cast<double>(cell.successes()) / cell.episodes();
     if (const ArmWeights& arm_weights = weights.at(cell.place.scenario); !arm_weights.empty()) {
       rate = 0;
       for (const auto& [arm, weight] : arm_weights)
         rate += weight * successes(cell.outcomes.at(arm)) / static_cast<double>(cell.outcomes.at(arm).size());
     }
-    standing.episodes += cell.episodes();
-    standing.failed_cells += !cell.failed.empty();
     by_scenario[cell.place.scenario].push_back(rate);
     at[cell.place.demonstrations][cell.place.scenario].push_back(rate);
     for (const auto& [arm, letters] : cell.outcomes)
       in_arm[arm][cell.place.scenario].push_back(successes(letters) / static_cast<double>(letters.size()));
   }
   const auto over_scenarios = [](const std::map<std::string, std::vector<double>>& scenarios) {
-    std::vector<double> means;
-    for (const auto& scenario : scenarios) means.push_back(mean(scenario.second));
-    return mean(means);
+    std::vector<double> each;
+    for (const auto& scenario : scenarios) each.push_back(mean(scenario.second));
+    return mean(each);
   };
-  for (const auto& [scenario, rates] : by_scenario) standing.in_scenario[scenario] = mean(rates);
-  for (const auto& [n, scenarios] : at) standing.at[n] = over_scenarios(scenarios);
-  for (const auto& [arm, scenarios] : in_arm) standing.in_arm[arm] = over_scenarios(scenarios);
-  standing.score = over_scenarios(by_scenario);
+  for (const auto& [scenario, rates] : by_scenario) means.in_scenario[scenario] = mean(rates);
+  for (const auto& [n, scenarios] : at) means.at[n] = over_scenarios(scenarios);
+  for (const auto& [arm, scenarios] : in_arm) means.in_arm[arm] = over_scenarios(scenarios);
+  means.score = over_scenarios(by_scenario);
+  return means;
+}
+
+void add_rates(Standing& standing) {
+  const Entry& entry = *standing.entry;
+  static_cast<Means&>(standing) = means_of(entry.setting, Units(entry).cells());
+  if (entry.setting.paired()) standing.each = means_of(entry.setting, entry.cells);
+  for (const PlayedCell& cell : entry.cells) {
+    standing.episodes += cell.episodes();
+    standing.failed_cells += !cell.failed.empty();
+  }
   for (const std::string& axis : axes_of(entry.setting)) standing.areas[axis] = relative_area(entry, axis);
 }
 

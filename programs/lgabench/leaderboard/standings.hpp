@@ -10,19 +10,24 @@
 
 namespace lgabench::leaderboard {
 
-/// An entry in its table. A rate is a mean over scenarios of the share of successful episodes; an episode of a cell
-/// that the method failed is one that was lost. In a perturbed table (areas.hpp) score, interval, rates by
+/// Means over scenarios of the share of units (units.hpp) that were won; those of a cell that the method failed are
+/// lost.
+struct Means {
+  double score = 0;          // over all arms and numbers of demonstrations
+  std::map<int, double> at;  // by number of demonstrations; 0 of a row that learns nothing
+  std::map<std::string, double> in_arm, in_scenario;
+};
+
+/// An entry in its table. In a perturbed table (areas.hpp) score, interval, rates by
 /// demonstrations and by scenario are of areas under the curves of success against levels, over axes.
-struct Standing {
+struct Standing : Means {
   const Entry* entry = nullptr;
-  double score = 0;               // over all arms and numbers of demonstrations
-  statistics::Interval interval;  // 95 %
+  std::optional<Means> each;      // of its episodes, where the unit is a pair of them
+  statistics::Interval interval;  // 95 %, of the score
   std::optional<int> rank;    // 1 + the entries that are significantly better, and no less than that of an entry with
                               // more success; none where it is not ranked
   std::string not_ranked;     // why; "" where it is ranked
   bool below_random = false;  // its score is below that of the reference row random_object
-  std::map<int, double> at;   // rate by number of demonstrations; 0 of a row that learns nothing
-  std::map<std::string, double> in_arm, in_scenario;
   std::map<std::string, std::optional<double>> areas;  // by axis, relative to the control
   /// In the abstraction track: success over the arms that its file names, and how much of the distance from the mask of
   /// any object to that of the truth it closes there; none where one of those two is no row of the table.
@@ -33,7 +38,7 @@ struct Standing {
   double lm_queries = 0, lm_tokens = 0, learn_s = 0;  // of a cell that did not fail, on average
 };
 
-/// Shares of successes by scenario (and layout), training seed and test scene.
+/// Shares of units that were won by scenario (and layout), training seed and test scene (pair of scenes).
 using Rates = std::vector<std::vector<std::vector<double>>>;
 /// An entry's, over all arms and numbers of demonstrations; with an arm those of it alone, at one number of
 /// demonstrations, in the scenarios that have it.

@@ -10,6 +10,7 @@
 #include <lgabench/leaderboard/areas.hpp>
 #include <lgabench/leaderboard/board_steps.hpp>
 #include <lgabench/leaderboard/titles.hpp>
+#include <lgabench/leaderboard/units.hpp>
 #include <lgabench/statistics/about_suite.hpp>
 #include <lgabench/statistics/names.hpp>
 #include <lgabench/statistics/tables.hpp>
@@ -153,7 +154,9 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
     put(grid, "rank", 'r', rank_span(s));
     put(grid, "method", 'l', named_cell(s));
     grid.rows.back().cells.back().style = s.is_reference() ? MethodStyle() : styles(s.name);
-    put(grid, axes.empty() ? "success" : "area", 'r', score_button(s, (first_row + table.row(s)) * scenarios_of_a_row));
+    put(grid, axes.empty() ? success_word(setting) : "area", 'r',
+        score_button(s, (first_row + table.row(s)) * scenarios_of_a_row));
+    if (s.each) put(grid, "success per episode", 'r', Span::number(fixed(s.each->score)));
     put(grid, "policy", 'l', Span(s.policy));
     if (setting.demonstrations.size() > 1)
       for (const int n : setting.demonstrations) {
@@ -217,7 +220,7 @@ Grid details_grid(const NamedTable& table) {
 Chart curve_chart(const NamedTable& table) {
   Chart chart;
   const std::vector<int>& demonstrations = table.setting.demonstrations;
-  chart.title = "Success against the number of demonstrations";
+  chart.title = statistics::capital(success_word(table.setting)) + " against the number of demonstrations";
   chart.subtitle = fmt::format("mean over {} scenarios; each method's best rows", table.setting.scenarios.size());
   chart.axis = "demonstrations";
   chart.alternative = chart.title + ", as in the table's columns";
@@ -245,18 +248,22 @@ Chart curve_chart(const NamedTable& table) {
 // Which scenarios an entry can do: a colour for each.
 Grid heat_grid(const NamedTable& table, std::size_t first_row) {
   const Titles titles(table.setting.suite);
-  Grid grid =
-      grid_of(table, "_scenarios",
-              axes_of(table.setting).empty() ? "Success in each scenario, over all arms and numbers of demonstrations"
-                                             : "Area in each scenario, over its axes and numbers of demonstrations");
+  Grid grid = grid_of(table, "_scenarios",
+                      axes_of(table.setting).empty()
+                          ? fmt::format("{} in each scenario, over all arms and numbers of demonstrations",
+                                        statistics::capital(success_word(table.setting)))
+                          : "Area in each scenario, over its axes and numbers of demonstrations");
   for (const NamedStanding& s : table.standings) {
     std::size_t number = (first_row + table.row(s)) * scenarios_of_a_row;
     add_row(grid, s);
     put(grid, "method", 'l', named_cell(s));
     put(grid, "policy", 'l', Span(s.policy));
     for (const Setting::Scenario& scenario : table.setting.scenarios) {
-      const double rate = s.in_scenario.at(scenario.id);
-      put(grid, titles.scenario(scenario.id), 'r', rate_button(fixed(rate), rate, ++number));
+      const auto rate = s.in_scenario.find(scenario.id);
+      ++number;
+      if (rate == s.in_scenario.end()) continue;  // the second of two scenarios that make the pairs
+      const std::string other = scenario.pair.empty() || scenario.pair == scenario.id ? "" : " + " + scenario.pair;
+      put(grid, titles.scenario(scenario.id + other), 'r', rate_button(fixed(rate->second), rate->second, number));
     }
   }
   return grid;
@@ -315,26 +322,20 @@ std::string section_title(const NamedTable& table, const std::vector<NamedTable>
   return fmt::format("{}, {}", ranking, preset);
 }
 
-std::string what_was_played(const Setting& setting) {
-  const auto presets = statistics::about_suite(setting.suite).presets;
-  const auto found = presets.find(setting.preset);
-  return fmt::format(
-      "{}{} scenarios, {} demonstrations, {} training seed{}, {} test scenes of each arm and {}; scene seed {}.",
-      found == presets.end() ? "" : found->second + " ", setting.scenarios.size(),
-      fmt::join(setting.demonstrations, ", "), setting.seeds.size(), setting.seeds.size() == 1 ? "" : "s",
-      setting.episodes, setting.test_scenes == TestScenes::per_seed ? "training seed" : "scenario", setting.scene_seed);
-}
-
 document::Document suite_document(const std::string& suite, const std::vector<NamedTable>& tables) {
   Document document;
+  const Setting& setting = tables.front().setting;
   document.suite = suite;
   document.title = "lgabench leaderboard: " + Titles(suite).suite();
   document.question = statistics::about_suite(suite).question;
   document.description = document.question.empty() ? "Published results of lgabench." : document.question;
-  document.headline = {Span::link("All suites", "index.html"),
-                       ". Success is the mean over scenarios of the share of successful episodes, over all arms and "
-                       "numbers of demonstrations. A click on a number shows the episodes behind it, two of them as "
-                       "pictures."};
+  document.headline = {
+      Span::link("All suites", "index.html"),
+      fmt::format(". {} is the mean over scenarios of the share of {}, over all arms and numbers of "
+                  "demonstrations. A click on a number shows the episodes behind it, two of them as "
+                  "pictures.",
+                  statistics::capital(success_word(setting)),
+                  setting.paired() ? "scenes in which both commands of a pair end right" : "successful episodes")};
   std::size_t first_row = 0, number = 0;
   for (const NamedTable& table : tables) {
     const std::string id = fmt::format("table{}", ++number);

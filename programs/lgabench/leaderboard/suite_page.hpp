@@ -45,6 +45,9 @@ struct NamedTable {
 std::vector<NamedTable> named_tables(const std::vector<const Entry*>& table, const Labels& labels,
                                      const Tracks& tracks);
 
+/// Whether some of the tables have pairs for units (units.hpp).
+bool is_paired(const std::vector<NamedTable>& tables);
+
 /// A table without rows. `what`: of its name, behind the preset's.
 document::Grid grid_of(const NamedTable& table, const std::string& what, std::string caption);
 /// Adds a row without cells for it, which document::put() gives it.

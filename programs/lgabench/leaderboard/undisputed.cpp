@@ -9,6 +9,7 @@
 #include <lgabench/abstraction/disputed.hpp>
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/core/contains.hpp>
+#include <lgabench/leaderboard/units.hpp>
 #include <lgabench/statistics/about_suite.hpp>
 #include <lgabench/statistics/statistics.hpp>
 
@@ -70,18 +71,25 @@ std::optional<double> success(const Undisputed& undisputed, const Entry& entry) 
   struct Count {
     double won = 0, played = 0;
   };
+  std::vector<PlayedCell> cells = entry.cells;
+  for (PlayedCell& cell : cells) {
+    const auto letters = cell.outcomes.find(undisputed.main.arm);
+    const auto found = undisputed.disputed.find(
+        {cell.place.scenario, cell.place.layout, scene_set(entry.setting.test_scenes, cell.place.seed)});
+    if (letters == cell.outcomes.end() || found == undisputed.disputed.end()) continue;
+    for (std::size_t i = 0; i < letters->second.size(); ++i)
+      if (found->second[i]) letters->second[i] = left_out_letter;
+  }
   std::map<std::string, Count> by_scenario;
-  for (const PlayedCell& cell : entry.cells) {
+  for (const PlayedCell& cell : Units(entry.setting, cells)) {
     const auto letters = cell.outcomes.find(undisputed.main.arm);
     const int n = cell.place.demonstrations;  // 0 of a row that learns nothing
     if (letters == cell.outcomes.end() || (n != 0 && n != undisputed.main.demonstrations)) continue;
-    const auto found = undisputed.disputed.find(
-        {cell.place.scenario, cell.place.layout, scene_set(entry.setting.test_scenes, cell.place.seed)});
-    for (std::size_t i = 0; i < letters->second.size(); ++i) {
-      if (found != undisputed.disputed.end() && found->second[i]) continue;
+    for (const char letter : letters->second) {
+      if (letter == left_out_letter) continue;
       Count& count = by_scenario[cell.place.scenario];
       ++count.played;
-      count.won += is_success(letters->second[i]);
+      count.won += is_success(letter);
     }
   }
   std::vector<double> rates;

@@ -8,10 +8,12 @@
 #include <ctime>
 #include <limits>
 #include <map>
+#include <set>
 
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/leaderboard/fresh_commands.hpp>
+#include <lgabench/leaderboard/units.hpp>
 #include <lgabench/statistics/statistics.hpp>
 
 namespace lgabench::leaderboard {
@@ -60,13 +62,17 @@ void expect_fresh(const JsonReader& line, const Entry& entry) {
   if (!line.has("successes")) return;
   const std::vector<std::size_t> chosen = fresh_cells(entry, line.at("nonce").string());
   expect_chosen(line, entry, chosen);
+  std::vector<PlayedCell> played;
+  for (const std::size_t i : chosen) played.push_back(entry.cells[i]);
+  const Units units(entry.setting, played);
   const std::vector<JsonReader> cells = line.at("successes").elements();
-  if (cells.size() != chosen.size()) line.at("successes").fail("an object for each cell");
+  if (cells.size() != units.size()) line.at("successes").fail("an object for each cell");
   if (line.has("persons")) line.at("persons").integer(2, entry.setting.episodes);
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const std::vector<std::string>& arms = entry.setting.scenario(entry.cells[chosen[i]].place.scenario).arms;
-    cells[i].only(arms);
-    for (const std::string& arm : arms) cells[i].at(arm).integer(0, entry.setting.episodes);
+  auto cell = cells.begin();
+  for (const PlayedCell& one : units) {
+    cell->only(entry.setting.scenario(one.place.scenario).arms);
+    for (const auto& [arm, letters] : one.outcomes) cell->at(arm).integer(0, static_cast<long long>(letters.size()));
+    ++cell;
   }
   const std::vector<FreshEstimate> estimates = fresh_estimates(entry, {&line.json()});
   const bool differs = std::any_of(estimates.begin(), estimates.end(), [](const auto& one) { return one.differs(); });
@@ -199,23 +205,29 @@ std::vector<std::size_t> fresh_cells(const Entry& entry, const std::string& nonc
 }
 
 std::vector<FreshEstimate> fresh_estimates(const Entry& entry, const std::vector<const Json*>& lines) {
-  std::map<std::string, std::map<std::string, std::pair<int, int>>> played;  // cell -> arm -> successes, episodes
+  const Units units(entry);
+  std::map<std::string, std::map<std::string, std::pair<int, int>>> played;  // cell -> arm -> successes, units
   int persons = 0;
   for (const Json* line : lines) {
     persons = line->value("persons", 0);
-    for (std::size_t i = 0; i < line->at("cells").size(); ++i)
-      for (const auto& [arm, successes] : line->at("successes").at(i).items()) {
-        auto& [won, episodes] = played[line->at("cells").at(i)][arm];
+    const std::set<std::string> cells = line->at("cells");
+    auto cell = line->at("successes").begin();
+    for (const PlayedCell& one : units) {
+      if (cells.count(one.key) == 0) continue;
+      for (const auto& [arm, successes] : cell->items()) {
+        auto& [won, of] = played[one.key][arm];
         won += successes.get<int>();
-        episodes += entry.setting.episodes;
+        of += static_cast<int>(one.outcomes.at(arm).size());
       }
+      ++cell;
+    }
   }
   std::map<std::string, int> cells_of_arm;
   for (const auto& cell : played)
     for (const auto& arm : cell.second) ++cells_of_arm[arm.first];
   std::map<std::string, Sum> sums;
   Sum mean;
-  for (const PlayedCell& cell : entry.cells) {
+  for (const PlayedCell& cell : units) {
     const auto fresh = played.find(cell.key);
     if (fresh == played.end()) continue;
     for (const auto& [arm, counts] : fresh->second) {
@@ -227,7 +239,7 @@ std::vector<FreshEstimate> fresh_estimates(const Entry& entry, const std::vector
                         now.second * (1 - now.second) / (counts.second + 2.);
       if (persons > 0)
         variance = variance_of_persons(letters, persons, before.second * (1 - before.second)) *
-                   (1. / persons + static_cast<double>(entry.setting.episodes) / counts.second / persons);
+                   (1. / persons + static_cast<double>(letters.size()) / counts.second / persons);
       sums[arm].add(1. / cells_of_arm.at(arm), now.first - before.first, variance);
       mean.add(1. / static_cast<double>(played.size() * fresh->second.size()), now.first - before.first, variance);
     }
