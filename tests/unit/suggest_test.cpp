@@ -25,6 +25,7 @@ TEST(Nearest, IsASlipAway) {
 
 TEST(NoneNamed, SuggestsAndLists) {
   EXPECT_EQ(none_named("scenario", "hart", {"heart", "letter"}), "no scenario \"hart\" (did you mean \"heart\"?)");
+  EXPECT_EQ(none_named("layout", "plane", {}), "no layout \"plane\", there is none");
   EXPECT_EQ(none_named("scenario", "moon", {"heart", "letter"}),
             "no scenario \"moon\", expected one of: heart, letter");
 }

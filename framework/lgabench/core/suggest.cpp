@@ -59,6 +59,7 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& kn
 std::string none_named(std::string_view what, std::string_view word, const std::vector<std::string>& known) {
   constexpr std::size_t most = 40, examples = 8;  // of a name; more are no help
   const std::string begin = fmt::format("no {} \"{}\"", what, word);
+  if (known.empty()) return begin + ", there is none";
   if (const std::string near = suggestion(word, known); !near.empty()) return begin + near;
   if (known.size() <= most) return fmt::format("{}, expected one of: {}", begin, fmt::join(known, ", "));
   std::vector<std::string> similar = known;

@@ -22,7 +22,8 @@ constexpr long long largest_seed = std::numeric_limits<std::int64_t>::max();
 // Method id or "*" -> option -> value, as far as it can be checked without plugins.
 Json options_of(const JsonReader& options, const std::vector<std::string>& methods) {
   std::vector<std::string> known{"*"};
-  for (const std::string& method : methods) known.push_back(row_id(method));
+  for (const std::string& method : methods)
+    if (!contains(known, row_id(method))) known.push_back(row_id(method));
   options.only(known);
   for (const auto& method : options.json().items()) {
     const JsonReader values = options.at(method.key());

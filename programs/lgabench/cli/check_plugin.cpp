@@ -23,6 +23,7 @@
 #include <lgabench/core/version.hpp>
 #include <lgabench/harness/suite.hpp>
 #include <lgabench/harness/worker_pool.hpp>
+#include <lgabench/host/python_environment.hpp>
 #include <lgabench/host/python_method.hpp>
 #include <lgabench/host/reach.hpp>
 #include <lgabench/job/check_report.hpp>
@@ -31,7 +32,7 @@ namespace lgabench::cli {
 namespace {
 
 struct CheckPluginArguments {
-  std::string file, python = "python3", environment;
+  std::string file, python = usual_python(), environment;
   std::vector<std::string> settings;
   double timeout_s = 600, memory_gib = 0;
   bool json = false;

@@ -29,7 +29,7 @@ namespace lgabench::cli {
 namespace {
 
 struct CheckScenarioArguments {
-  std::string file, engine, suite, python = "python3";
+  std::string file, engine, suite, python = usual_python();
   std::vector<std::string> layouts;
   fs::path out;
   int scenes = 50;

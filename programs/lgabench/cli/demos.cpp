@@ -23,7 +23,7 @@ namespace lgabench::cli {
 namespace {
 
 struct DemosArguments {
-  std::string scenario, layout, engine, out, inspect, selection, python = "python3";
+  std::string scenario, layout, engine, out, inspect, selection, python = usual_python();
   int n = 10, noisy = 0;
   double noise = .2;
   std::uint64_t seed = 0;

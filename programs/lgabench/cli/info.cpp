@@ -15,6 +15,7 @@
 #include <lgabench/core/shipped.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/suite.hpp>
+#include <lgabench/host/python_environment.hpp>
 #include <lgabench/host/python_method.hpp>
 #include <lgabench/plugin/loader.hpp>
 
@@ -217,7 +218,7 @@ void info(const std::string& name, bool json, const std::vector<fs::path>& direc
 
 void add_info(CLI::App& app, int& exit) {
   struct InfoArguments {
-    std::string name, python = "python3";
+    std::string name, python = usual_python();
     bool json = false;
     std::vector<fs::path> directories;
   };

@@ -14,6 +14,7 @@
 #include <lgabench/core/colour.hpp>
 #include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/host/python_environment.hpp>
 #include <lgabench/host/python_method.hpp>
 #include <lgabench/leaderboard/add.hpp>
 #include <lgabench/leaderboard/archive.hpp>
@@ -29,7 +30,7 @@ namespace lgabench::cli {
 namespace {
 
 struct LeaderboardArguments {
-  std::string action, what, line, about, against, reason, nonce, python = "python3";
+  std::string action, what, line, about, against, reason, nonce, python = usual_python();
   fs::path board = "results/leaderboard", archive;
   Words rows, methods;
   std::vector<fs::path> plugin_path, documents;

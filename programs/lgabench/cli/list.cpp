@@ -18,6 +18,7 @@
 #include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/suite.hpp>
 #include <lgabench/harness/suite_scenario.hpp>
+#include <lgabench/host/python_environment.hpp>
 #include <lgabench/host/python_method.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/record/answer_source.hpp>
@@ -235,7 +236,7 @@ std::vector<std::string> common_layouts(const std::vector<Scenario>& scenarios) 
 void add_list(CLI::App& app, int& exit) {
   struct ListArguments {
     bool json = false, is_short = false;
-    std::string kind, of, python = "python3";
+    std::string kind, of, python = usual_python();
     std::vector<fs::path> directories;
   };
   const auto arguments = std::make_shared<ListArguments>();

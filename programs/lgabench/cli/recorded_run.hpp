@@ -6,6 +6,7 @@
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/harness/run_suite.hpp>
+#include <lgabench/host/python_environment.hpp>
 
 namespace lgabench::cli {
 
@@ -30,7 +31,7 @@ struct RecomputeArguments {
   double timeout_s = 3600;
   Words methods;
   std::vector<fs::path> plugin_path;
-  std::string python = "python3";
+  std::string python = usual_python();
 
   /// The plugins. @throws PluginError
   Catalogue catalogue() const;

@@ -34,7 +34,7 @@ struct ReplayArguments {
   fs::path run, out;
   std::vector<std::string> episodes;
   std::vector<fs::path> plugin_path;
-  std::string python = "python3";
+  std::string python = usual_python();
 };
 
 struct Recorded {

@@ -9,12 +9,13 @@
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/harness/run_suite.hpp>
+#include <lgabench/host/python_environment.hpp>
 
 namespace lgabench::cli {
 
 struct RunArguments {
-  std::string suite, preset, python = "python3", answers = "recorded", truth = "released", humans, out, cache, debug,
-                             shard = "1/1", model, cassette, request, prompt, train_on;
+  std::string suite, preset, python = usual_python(), answers = "recorded", truth = "released", humans, out, cache,
+                             debug, shard = "1/1", model, cassette, request, prompt, train_on;
   Words methods, engines, scenarios, layouts, demonstrations, seeds, settings, selection_errors, names, segments, axes,
       arms;
   std::vector<fs::path> plugin_path;
