@@ -16,6 +16,7 @@ draw heart test 25% continuous
 for arm in control texture distractor hard; do draw q2_heart $arm 25% continuous; done
 for arm in seen unseen seen_varied; do draw q3_utensil $arm 25% continuous; done
 for arm in same_place moved crowd; do draw bring_fruit $arm 12.5%; done
+for arm in gone control; do draw refusing_heart $arm 25% continuous; done
 for arm in few many near; do draw fetch_ripe_fruit $arm 12.5% table fetch; done
 draw errands_fruit told 25% continuous errands
 draw words_relation_heart_left_of_bowl test 25% continuous

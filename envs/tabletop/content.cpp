@@ -147,7 +147,7 @@ Content read_persons_content(const Scenario& scenario, const JsonReader& file, c
   return content;
 }
 
-// What is brought in several steps says of its scenes what a pair of commands needs, and nothing else.
+// What is judged as an errand says of its scenes what its task's own members say, and nothing else.
 Content read_errands_content(const Scenario& scenario, const JsonReader& file, const JsonReader* scenes,
                              bool training) {
   if (scenario.as_method_asks) file.at("task").fail("\"as_method_asks\": false in \"train\" beside it");
@@ -218,7 +218,7 @@ std::vector<std::string> scene_members(const Task& task) {
 }
 
 Content read_content(const Scenario& scenario, const JsonReader& file, const JsonReader* scenes, bool training) {
-  if (find_task(scenario.task).most_steps() > 1) return read_errands_content(scenario, file, scenes, training);
+  if (find_task(scenario.task).has_errand()) return read_errands_content(scenario, file, scenes, training);
   if (file.has("persons") && file.at("persons").boolean()) return read_persons_content(scenario, file, scenes);
   Content content;
   if (training) content.distractors = {1, 1};

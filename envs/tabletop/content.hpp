@@ -57,7 +57,7 @@ struct Content : SceneContent {
   std::vector<FeatureSet> near_miss_sets;
   double misleading = 1;  // share of the scenes in which a near miss, or a second object that belongs, stands
   std::shared_ptr<const Persons> persons;              // commands are of persons: rival_objects()
-  std::shared_ptr<const Errands> errands;              // a task of several steps: errand_scene()
+  std::shared_ptr<const Errands> errands;              // a task with errands: errand_scene()
   std::optional<FeatureSet> never_distractor;          // test distractors stay out of it, beyond the true distribution
   std::map<std::string, std::vector<double>> numbers;  // of the task's own members, see Task::read()
 

@@ -3,232 +3,37 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
-#include <set>
 #include <utility>
 
 #include <common/scene_members.hpp>
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/sampling.hpp>
-#include <lgabench/core/turns.hpp>
 #include <tabletop/errand.hpp>
+#include <tabletop/errand_tables.hpp>
 #include <tabletop/task.hpp>
 
 namespace lgabench::tabletop {
-namespace {
-
-constexpr int test_things = 7, training_things = 5;
-constexpr std::pair<int, int> training_members{2, 3};
-
-bool holds(const std::vector<FeatureSet>& sets, const Named& one) {
-  return std::any_of(sets.begin(), sets.end(),
-                     [&one](const FeatureSet& set) { return set.contains(one.object_type, one.texture); });
-}
-
-// Things to draw from: a type with equal odds, then a texture.
-class Pool {
- public:
-  void add(const std::string& type, const std::string& texture) {
-    if (types_.empty() || types_.back() != type) {
-      types_.push_back(type);
-      textures_.emplace_back();
-    }
-    textures_.back().push_back(texture);
-  }
-  bool empty() const { return types_.empty(); }
-  bool holds(const Named& one) const {
-    const auto found = std::find(types_.begin(), types_.end(), one.object_type);
-    return found != types_.end() && contains(textures_[static_cast<std::size_t>(found - types_.begin())], one.texture);
-  }
-
-  Named draw(RandomStream& random) const {
-    const auto type = random.below(static_cast<std::uint32_t>(types_.size()));
-    return {types_[type], any_of(textures_[type], random)};
-  }
-  template <class Which>
-  Pool only(const Which& which) const {
-    Pool some;
-    for (std::size_t i = 0; i < types_.size(); ++i)
-      for (const std::string& texture : textures_[i])
-        if (which(Named{types_[i], texture})) some.add(types_[i], texture);
-    return some;
-  }
-  // Of its type or, as often, of its texture, where there are such.
-  Named draw_like(const Named& other, RandomStream& random) const {
-    std::vector<std::size_t> like;
-    const bool by_type = random.coin();
-    for (std::size_t i = 0; i < types_.size(); ++i)
-      if (by_type ? types_[i] == other.object_type : contains(textures_[i], other.texture)) like.push_back(i);
-    if (like.empty()) return draw(random);
-    const std::size_t type = like[random.below(static_cast<std::uint32_t>(like.size()))];
-    return {types_[type], by_type ? any_of(textures_[type], random) : other.texture};
-  }
-
- private:
-  std::vector<std::string> types_;
-  std::vector<std::vector<std::string>> textures_;  // of each type
-};
-
-const Named& one_of(const std::vector<Named>& things, RandomStream& random) {
-  return things[random.below(static_cast<std::uint32_t>(things.size()))];
-}
-
-}  // namespace
-
-// What some commands are about, and what else stands on their tables.
-struct ErrandClass {
-  std::vector<FeatureSet> sets;
-  std::vector<Pool> members;     // of each of its parts: what turns of their own take
-  Pool near;                     // what is nearly a member
-  std::vector<Pool> others;      // what commands of each other class mean; where there is none, all else
-  std::pair<int, int> belong{};  // so many members, fewest and most, stand in a test scene
-};
 
 struct Errands {
   std::string scenes_of;      // the scenario in whose name scenes are drawn
   std::vector<Meaning> pair;  // in the order in which scenes give them
   std::vector<ErrandClass> classes;
-  std::vector<std::size_t> class_of;  // of each command
-  std::size_t class_of_pair = 0;
+  std::vector<std::size_t> class_of;        // of each command
   std::vector<std::pair<int, int>> needed;  // takes of the one and of the other; none in training
   bool appears = false;
   bool training = false;
+  bool refusing = false;  // one command and class: what is meant may not be there
+  bool is_there = false;  // then, in tests; in training it is in every other scene
 };
 
 namespace {
 
-struct Things {
-  std::vector<Named> things;
-  std::optional<Named> later;
-};
+constexpr int tries = 20'000;
 
-int between(std::pair<int, int> fewest_and_most, RandomStream& random) {
-  const auto [fewest, most] = fewest_and_most;
-  return fewest + static_cast<int>(random.below(static_cast<std::uint32_t>(most - fewest + 1)));
+bool holds(const std::vector<FeatureSet>& sets, const Named& one) {
+  return std::any_of(sets.begin(), sets.end(),
+                     [&one](const FeatureSet& set) { return set.contains(one.object_type, one.texture); });
 }
-
-// Half of them share the type or the texture of one before, so that some kind is there twice.
-Named draw_member(const ErrandClass& of, const std::vector<Named>& before, RandomStream& random) {
-  const Pool& pool = of.members[random.below(static_cast<std::uint32_t>(of.members.size()))];
-  std::vector<Named> alike;
-  std::copy_if(before.begin(), before.end(), std::back_inserter(alike), [&](const Named& o) { return pool.holds(o); });
-  if (alike.empty() || random.coin()) return pool.draw(random);
-  const Named other = one_of(alike, random);
-  return pool.draw_like(other, random);
-}
-
-Named draw_near_miss(const ErrandClass& of, const std::vector<Named>& members, RandomStream& random) {
-  const Named other = one_of(members, random);
-  return of.near.draw_like(other, random);
-}
-
-// Members one by one, then near misses and what other commands mean, in turn; the first by a coin.
-Things draw_table(const ErrandClass& of, int members, int count, RandomStream& random) {
-  Things table;
-  while (static_cast<int>(table.things.size()) < members) table.things.push_back(draw_member(of, table.things, random));
-  const std::vector<Named> belong = table.things;
-  bool near = random.coin();
-  for (int i = members; i < count; ++i, near = !near)
-    table.things.push_back(near ? draw_near_miss(of, belong, random)
-                                : of.others[random.below(static_cast<std::uint32_t>(of.others.size()))].draw(random));
-  return table;
-}
-
-// Names of what is taken, in order.
-using Sequence = std::vector<std::pair<std::string, std::string>>;
-using Sequences = std::set<Sequence>;
-
-Sequence sequence_of(const std::vector<Named>& brought) {
-  Sequence names;
-  for (const Named& one : brought) names.emplace_back(one.object_type, one.texture);
-  return names;
-}
-
-// All right ones; false where a wanted take leads nowhere, or one is of another number of takes.
-bool find_right(const Meaning& meaning, const Things& table, std::optional<int> takes, std::vector<Named>& brought,
-                Sequences& right) {
-  constexpr std::size_t most = 5;
-  if (is_done(meaning, table.things, brought)) {
-    right.insert(sequence_of(brought));
-    return !takes || static_cast<int>(brought.size()) == *takes;
-  }
-  const std::vector<Named> next = wanted(meaning, table.things, brought);
-  if (next.empty() || brought.size() == static_cast<std::size_t>(takes.value_or(most))) return false;
-  for (const Named& one : next) {
-    Things left{table.things, {}};
-    left.things.erase(std::find(left.things.begin(), left.things.end(), one));
-    if (table.later) left.things.push_back(*table.later);
-    brought.push_back(one);
-    const bool leads = find_right(meaning, left, takes, brought, right);
-    brought.pop_back();
-    if (!leads) return false;
-  }
-  return true;
-}
-
-std::optional<Sequences> right_sequences(const Meaning& meaning, const Things& table,
-                                         std::optional<int> takes = std::nullopt) {
-  Sequences right;
-  std::vector<Named> brought;
-  if (!find_right(meaning, table, takes, brought, right)) return std::nullopt;
-  return right;
-}
-
-Sequence in_order_of_names(Sequence names) {
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-// Whether taking all that is wanted at first is right, in some order.
-bool right_at_first(const Meaning& meaning, const std::vector<Named>& things, const Sequences& right) {
-  const std::vector<Named> names = wanted(meaning, things, {});
-  std::vector<Named> first;
-  std::copy_if(things.begin(), things.end(), std::back_inserter(first),
-               [&names](const Named& one) { return contains(names, one); });
-  const Sequence all = in_order_of_names(sequence_of(first));
-  return std::any_of(right.begin(), right.end(), [&all](const Sequence& one) { return in_order_of_names(one) == all; });
-}
-
-// The draw tells the pair's commands apart, and each needs so many takes of what stands there.
-bool is_kept(const Errands& errands, const Things& table, std::pair<int, int> needed) {
-  std::vector<Sequences> right;
-  for (std::size_t i = 0; i < errands.pair.size(); ++i) {
-    const Meaning& meaning = errands.pair[i];
-    auto found = right_sequences(meaning, {table.things, {}}, i == 0 ? needed.first : needed.second);
-    if (found && table.later) found = right_sequences(meaning, table);
-    if (!found) return false;
-    right.push_back(std::move(*found));
-  }
-  const auto in_both = [&right](const Sequence& one) { return right[1].count(one) > 0; };
-  if (std::any_of(right[0].begin(), right[0].end(), in_both)) return false;
-  return !right_at_first(errands.pair[0], table.things, right[0]) ||
-         !right_at_first(errands.pair[1], table.things, right[1]);
-}
-
-bool shows_takes(const Meaning& meaning, const Things& table) {
-  const auto right = right_sequences(meaning, table);
-  return right && right->count({}) == 0;
-}
-
-std::optional<Things> draw_test(const Errands& errands, std::pair<int, int> needed, RandomStream& random) {
-  const ErrandClass& of = errands.classes[errands.class_of_pair];
-  const int members = between(of.belong, random);
-  Things table = draw_table(of, members, test_things, random);
-  const std::vector<Named> belong(table.things.begin(), table.things.begin() + members);
-  if (errands.appears)
-    table.later = random.coin() ? draw_member(of, belong, random) : draw_near_miss(of, belong, random);
-  if (!is_kept(errands, table, needed)) return std::nullopt;
-  return table;
-}
-
-// Somebody takes something in a demonstration.
-std::optional<Things> draw_training(const ErrandClass& of, const Meaning& meaning, RandomStream& random) {
-  Things table = draw_table(of, between(training_members, random), training_things, random);
-  if (!shows_takes(meaning, table)) return std::nullopt;
-  return table;
-}
-
-constexpr int tries = 20'000, tries_at_reading = 5'000;
 
 // The pair that the command's, or two of the commands, are of.
 std::vector<Meaning> read_pair(const Scenario& scenario, const JsonReader& file) {
@@ -266,35 +71,41 @@ std::vector<FeatureSet> read_list(const JsonReader& reader, const FeatureSpace& 
   return sets;
 }
 
-ErrandClass read_class(const JsonReader& reader, const Scenario& scenario) {
-  reader.only({"parts", "near_miss_sets", "undecided", "belong"});
-  const FeatureSpace& space = scenario.space;
-  std::vector<std::vector<FeatureSet>> parts;
-  ErrandClass read;
-  for (const JsonReader& part : reader.at("parts").elements()) {
-    parts.push_back(read_list(part, space));
-    read.sets.insert(read.sets.end(), parts.back().begin(), parts.back().end());
-  }
-  const std::vector<FeatureSet> near = read_list(reader.at("near_miss_sets"), space),
-                                undecided = read_list(reader.at("undecided"), space);
-  read.belong = read_distractors(reader.at("belong"), test_things - 1);
-  if (read.belong.first == 0) reader.at("belong").fail("one that belongs, at least");
-  read.members.resize(parts.size());
-  read.others.resize(1);
+// What scenes can show of the parts' sets, of what is near them, and of all else; of what is undecided nothing.
+ErrandClass pools_of(const std::vector<std::vector<FeatureSet>>& parts, const std::vector<FeatureSet>& near,
+                     const std::vector<FeatureSet>& undecided, const FeatureSpace& space) {
+  ErrandClass all;
+  for (const std::vector<FeatureSet>& part : parts) all.sets.insert(all.sets.end(), part.begin(), part.end());
+  all.members.resize(parts.size());
+  all.others.resize(1);
   for (const std::string& type : space.object_types) {
     if (!can_show(type, Content::widest_in_crowd_m)) continue;
     for (const std::string& texture : space.textures) {
       const Named one{type, texture};
       if (holds(undecided, one)) continue;
       for (std::size_t i = 0; i < parts.size(); ++i)
-        if (holds(parts[i], one)) read.members[i].add(type, texture);
-      if (holds(read.sets, one)) continue;
-      read.others.front().add(type, texture);
-      if (holds(near, one)) read.near.add(type, texture);
+        if (holds(parts[i], one)) all.members[i].add(type, texture);
+      if (holds(all.sets, one)) continue;
+      all.others.front().add(type, texture);
+      if (holds(near, one)) all.near.add(type, texture);
     }
   }
-  if (parts.empty() || std::any_of(read.members.begin(), read.members.end(), [](const Pool& p) { return p.empty(); }))
-    reader.at("parts").fail("lists of sets of what scenes can show");
+  return all;
+}
+
+bool shows_all(const std::vector<Pool>& parts) {
+  return !parts.empty() && std::none_of(parts.begin(), parts.end(), [](const Pool& part) { return part.empty(); });
+}
+
+ErrandClass read_class(const JsonReader& reader, const Scenario& scenario) {
+  reader.only({"parts", "near_miss_sets", "undecided", "belong"});
+  std::vector<std::vector<FeatureSet>> parts;
+  for (const JsonReader& part : reader.at("parts").elements()) parts.push_back(read_list(part, scenario.space));
+  ErrandClass read = pools_of(parts, read_list(reader.at("near_miss_sets"), scenario.space),
+                              read_list(reader.at("undecided"), scenario.space), scenario.space);
+  read.belong = read_distractors(reader.at("belong"), test_things - 1);
+  if (read.belong.first == 0) reader.at("belong").fail("one that belongs, at least");
+  if (!shows_all(read.members)) reader.at("parts").fail("lists of sets of what scenes can show");
   if (read.near.empty()) reader.at("near_miss_sets").fail("what scenes can show and no command of the class means");
   return read;
 }
@@ -311,8 +122,7 @@ void read_classes(const Scenario& scenario, const JsonReader& file, Errands& err
   for (std::size_t i = 0; i < commands.size(); ++i)
     errands.class_of.push_back(class_of(scenario.commands[i].truth.target, commands[i].at("truth").at("target")));
   const JsonReader place = file.at(file.has("pair") ? "pair" : "commands");
-  errands.class_of_pair = class_of(errands.pair[0], place);
-  if (class_of(errands.pair[1], place) != errands.class_of_pair) place.fail("a pair of one class");
+  if (class_of(errands.pair[0], place) != class_of(errands.pair[1], place)) place.fail("a pair of one class");
 
   std::vector<std::vector<Pool>> meant;  // by commands of other classes
   for (std::size_t i = 0; i < errands.classes.size(); ++i) {
@@ -338,12 +148,23 @@ void read_needed(const JsonReader& reader, Errands& errands) {
     if (takes.size() != 2) one.fail("takes of the one and of the other command");
     const auto number = [&](const JsonReader& n) { return static_cast<int>(n.integer(errands.appears ? 1 : 0, most)); };
     errands.needed.emplace_back(number(takes[0]), number(takes[1]));
-    RandomStream random(fmt::format("errands/{}/{}", takes[0].json().dump(), takes[1].json().dump()));
-    int n = 0;
-    while (n < tries_at_reading && !draw_test(errands, errands.needed.back(), random)) ++n;
-    if (n == tries_at_reading) one.fail("takes that some scene needs which tells the pair's commands apart");
   }
   if (errands.needed.empty()) reader.fail("at least one pair of numbers");
+}
+
+// A command that means one thing, which may not be there.
+void read_to_refuse(const Scenario& scenario, const JsonReader& file, const JsonReader* scenes, Errands& errands) {
+  const std::vector<JsonReader> commands = file.at("commands").elements();
+  const Meaning& meant = scenario.commands.front().truth.target;
+  if (commands.size() != 1) file.at("commands").fail("one command");
+  if (meant.which || !meant.turns.empty()) commands.front().at("truth").at("target").fail("sets of objects alone");
+  ErrandClass all = pools_of({meant.sets}, read_list(file.at("near_miss_sets"), scenario.space),
+                             read_list(file.at("undecided"), scenario.space), scenario.space);
+  if (!shows_all(all.members)) commands.front().at("truth").at("target").fail("sets of what scenes can show");
+  if (all.near.empty()) file.at("near_miss_sets").fail("what scenes can show and the command does not mean");
+  errands.classes.push_back(std::move(all));
+  errands.class_of.push_back(0);
+  if (!errands.training) errands.is_there = scenes->at("is_there").boolean();
 }
 
 }  // namespace
@@ -353,6 +174,11 @@ std::shared_ptr<const Errands> read_errands(const Scenario& scenario, const Json
   auto errands = std::make_shared<Errands>();
   errands->scenes_of = file.has("scenes_of") ? file.at("scenes_of").string() : scenario.id;
   errands->training = training;
+  errands->refusing = find_task(scenario.task).most_steps() == 1;
+  if (errands->refusing) {
+    read_to_refuse(scenario, file, scenes, *errands);
+    return errands;
+  }
   errands->pair = read_pair(scenario, file);
   read_classes(scenario, file, *errands);
   if (training) return errands;
@@ -368,22 +194,63 @@ int objects_of(const Errands& errands) {
   return (errands.training ? training_things : test_things) + (errands.appears ? 1 : 0);
 }
 
-Scene errand_scene(const Scenario& scenario, const SceneRequest& request, int index) {
-  Scene scene = without_objects(scenario, request, index);
+namespace {
+
+// The table's things where they find room, all on the pallet too, since any may be brought. Of a table to refuse, both
+// that may stand in the last one's place do, and the others' places are the same with either.
+std::vector<SceneObject> placed_things(const Scenario& scenario, const SceneRequest& request, const Things& table,
+                                       bool meant_is_there, const Streams& stream) {
   const Content& content = content_of(scenario, request.arm);
-  const Errands& errands = *content.errands;
   const Task& task = find_task(scenario.task);
   const Layout layout = find_layout(task, request.layout);
+  const auto object = [](const Named& name, const Role& role) {
+    return SceneObject{name.object_type, name.texture, role, {}, 0, 0};
+  };
+  std::vector<Named> names = table.things;
+  if (table.later) names.push_back(*table.later);
+  if (table.meant) names.pop_back();
+  std::vector<SceneObject> objects;
+  const std::vector<int> order = stream("order").permutation(static_cast<int>(names.size()));
+  for (const int i : order) objects.push_back(object(names[static_cast<std::size_t>(i)], role::target));
+  task.place(layout, content, objects, stream);
+  objects.push_back({goal_type, goal_texture, role::goal, *layout.pallet, 0, 0});
+  if (table.meant) {
+    const auto with = [&](const Named& last) {
+      std::vector<SceneObject> all = objects;
+      all.push_back(object(last, role::target));
+      RandomStream random = stream("last");
+      const Room room = [&](const SceneObject& one) { return task.room(layout, one); };
+      if (!place_last(room, all, random)) throw NoRoom("no room for the thing that is exchanged");
+      return all;
+    };
+    std::vector<SceneObject> one = with(table.things.back()), other = with(*table.meant);
+    objects = std::move(meant_is_there ? other : one);
+  }
+  for (std::size_t i = 0; i < order.size(); ++i)
+    objects[i].role = static_cast<std::size_t>(order[i]) < table.things.size() ? role::distractor : role::later;
+  if (table.meant) objects.back().role = role::distractor;
+  return objects;
+}
+
+}  // namespace
+
+Scene errand_scene(const Scenario& scenario, const SceneRequest& request, int index) {
+  Scene scene = without_objects(scenario, request, index);
+  const Errands& errands = *content_of(scenario, request.arm).errands;
   const auto command = static_cast<std::size_t>(scene.command);
+  const auto commands = static_cast<int>(scenario.commands_of(request.arm).size());
   scene.errand = scenario.commands[command].truth.target;
-  if (!errands.training) scene.pair = index / static_cast<int>(scenario.commands_of(request.arm).size());
+  if (!errands.training && !errands.refusing) scene.pair = index / commands;
   const Streams stream = streams_of(errands.scenes_of, request, scene.drawn_as());
+  const bool is_there = errands.training ? index / commands % 2 == 0 : errands.is_there;
 
   RandomStream random = stream("errand");
-  const auto draw = [&] {
-    const std::size_t which = errands.training ? 0 : static_cast<std::size_t>(*scene.pair) % errands.needed.size();
-    return errands.training ? draw_training(errands.classes[errands.class_of[command]], *scene.errand, random)
-                            : draw_test(errands, errands.needed[which], random);
+  const auto draw = [&]() -> std::optional<Things> {
+    const ErrandClass& of = errands.classes[errands.class_of[command]];
+    if (errands.refusing) return draw_to_refuse(of, objects_of(errands), random);
+    if (errands.training) return draw_training(of, *scene.errand, random);
+    const std::size_t which = static_cast<std::size_t>(*scene.pair) % errands.needed.size();
+    return draw_test(of, errands.pair, errands.needed[which], errands.appears, random);
   };
   int placements = 0;
   for (int n = 0; n < tries && scene.objects.empty(); ++n) {
@@ -393,27 +260,15 @@ Scene errand_scene(const Scenario& scenario, const SceneRequest& request, int in
     const auto once_more = [&](const std::string& purpose) {
       return stream(fmt::format("{}/{}", purpose, placements));
     };
-    std::vector<Named> names = table->things;
-    if (table->later) names.push_back(*table->later);
-    std::vector<SceneObject> objects;
-    const std::vector<int> order = once_more("order").permutation(static_cast<int>(names.size()));
-    for (const int i : order) {  // any may be brought, so all need room on the pallet
-      const Named& name = names[static_cast<std::size_t>(i)];
-      objects.push_back({name.object_type, name.texture, role::target, {}, 0, 0});
-    }
     try {
-      task.place(layout, content, objects, once_more);
+      scene.objects = placed_things(scenario, request, *table, is_there, once_more);
     } catch (const NoRoom&) {
       continue;
     }
-    for (std::size_t i = 0; i < objects.size(); ++i)
-      objects[i].role = static_cast<std::size_t>(order[i]) < table->things.size() ? role::distractor : role::later;
-    scene.objects = std::move(objects);
   }
   if (scene.objects.empty())
     throw NothingToShow(fmt::format("scenario \"{}\", arm {}: expected a scene that shows how \"{}\" is meant",
                                     scenario.id, request.arm, scenario.commands[command].utterance));
-  scene.objects.push_back({goal_type, goal_texture, role::goal, *layout.pallet, 0, 0});
   permute_ids(scene.objects, stream("ids"));
   for (const std::size_t i : Errand(scene).wanted()) scene.objects[i].role = role::target;
   return scene;

@@ -99,7 +99,7 @@ bool place_last(const Room& room_of, std::vector<SceneObject>& objects, RandomSt
   constexpr int tries = 500;
   Taken taken;
   for (std::size_t i = 0; i + 1 < objects.size(); ++i) {
-    taken.bodies.push_back(outline_of(objects[i]));
+    (objects[i].role == role::goal ? taken.room : taken.bodies).push_back(outline_of(objects[i]));
     if (objects[i].role == role::target) taken.room.push_back(room_of(objects[i]));
   }
   for (int i = 0; i < tries; ++i)

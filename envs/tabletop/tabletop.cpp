@@ -174,7 +174,13 @@ class Tabletop final : public Environment {
       result.gaps = errand_gaps(scene_, began, carried_out, before, reached, motion);
       if (motion.taken != no_body) result.taken = scene_.objects[static_cast<std::size_t>(motion.taken)].instance_id;
       result.failure = errand_->moved(reached, motion);
-      while (result.failure == failure::goes_on && person_comes()) result.failure = errand_->moved(poses(), settled());
+      const bool is_only = task_->most_steps() == 1;
+      while (!is_only && result.failure == failure::goes_on && person_comes())
+        result.failure = errand_->moved(poses(), settled());
+      if (is_only && result.failure == failure::goes_on)
+        result.failure = !errand_->brought().empty() ? errand_->ended()
+                         : motion.taken == no_body   ? failure::missed_object
+                                                     : failure::bad_placement;
     }
     result.observation = observe();
     result.terminated = result.failure != failure::goes_on;
@@ -300,7 +306,7 @@ class TabletopType final : public EnvironmentType {
       for (const Layout& layout : task->layouts()) info.layouts.push_back(layout.id);
       if (const auto second = task->second()) info.second = *second;
       tasks_.push_back(info);
-      if (info.most_steps > 1) continue;
+      if (task->has_errand()) continue;
       most_instances_ = std::max(most_instances_, task->most_distractors() + 2);  // with target and goal
       for (const std::string& word : info.failures)
         if (!contains(failures_, word)) failures_.push_back(word);

@@ -58,8 +58,9 @@ class Task {
                      const Streams& stream) const;
   /// What must stay free beside the target itself for its motion: seen from above.
   virtual std::vector<Polygon> room(const Layout& layout, const SceneObject& target) const;
-  /// TaskInfo::most_steps. More than one: scenes have an errand (errand.hpp).
-  virtual int most_steps() const { return 1; }
+  virtual int most_steps() const { return 1; }  // TaskInfo::most_steps
+  /// Whether scenes have an errand (errand.hpp), so that "nothing is left to do" may be right.
+  virtual bool has_errand() const { return false; }
   /// How many distractors its scenes may have.
   virtual int most_distractors() const { return 2; }  // more do not fit beside the widest target
   /// What is painted on the table.

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Writes the scenarios of the suite `errands` from errands.json, where their commands stand together.
+"""Writes the scenarios of the suites `errands` and `refusing` from errands.json, where their commands stand together.
 
 A scenario of `told` demonstrates the heard commands of all of its group and tests the two that nobody demonstrated. Two scenarios of
-`shown` have words that leave the how out, one for each of the two, on the same scenes.
+`shown` have words that leave the how out, one for each of the two, on the same scenes. Those of `refusing` have the command of another
+scenario of the tabletop; what is fetched has a receiver too, and no suite.
 
 Usage: python3 tests/measure/errands_files.py [errands.json]
 """
@@ -53,6 +54,15 @@ def shown(scenario, group):
                "note": "The words leave out how the objects are used; demonstrations hold it."}
 
 
+def refusing(one):
+    of = json.loads((FOLDER / f"{one['of']}.json").read_text())
+    return {"id": one["id"], "environment": "tabletop", "task": "refusing", "feature_space": of["feature_space"], "may_stop": True,
+            "answers": {"recorded": "claude_track"}, **{key: one[key] for key in ("near_miss_sets", "undecided")},
+            "train": {"as_method_asks": False}, "commands": of["commands"],
+            "tests": [{"arm": "gone", "is_there": False}, {"arm": "control", "is_there": True}],
+            "note": f"The command of {one['of']}. Nothing that it means stands there, or one thing in another's place."}
+
+
 def text(value, depth=1):
     """JSON with a member or an element a line, where a line would be longer than 120."""
     line = json.dumps(value, ensure_ascii=False)
@@ -64,11 +74,13 @@ def text(value, depth=1):
 
 
 def main(file=pathlib.Path(__file__).parent / "errands.json"):
-    scenarios = json.loads(pathlib.Path(file).read_text())["scenarios"]
-    for scenario in scenarios:
-        group = [one for one in scenarios if one["group"] == scenario["group"]]
-        for one in [told(scenario, group), *shown(scenario, group)]:
-            (FOLDER / f"{one['id']}.json").write_text(text(one) + "\n")
+    data = json.loads(pathlib.Path(file).read_text())
+    written = [refusing(one) for one in data["refusing"] if one["environment"] == "tabletop"]
+    for scenario in data["scenarios"]:
+        group = [one for one in data["scenarios"] if one["group"] == scenario["group"]]
+        written += [told(scenario, group), *shown(scenario, group)]
+    for one in written:
+        (FOLDER / f"{one['id']}.json").write_text(text(one) + "\n")
 
 
 if __name__ == "__main__":

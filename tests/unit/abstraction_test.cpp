@@ -266,6 +266,7 @@ TEST(RecordedAnswers, AreEachScenariosOwn) {
     using Sources = std::pair<std::string, std::string>;
     const Sources otherwise = id.rfind("words_", 0) == 0        ? Sources{"claude_words", "claude_words"}
                               : id.rfind("drawn_", 0) == 0      ? Sources{"claude_drawn", "claude_drawn"}
+                              : id.rfind("refusing_", 0) == 0   ? Sources{"claude_track", "claude_track"}
                               : id.rfind("paraphrase_", 0) == 0 ? Sources{"claude_paraphrases", "claude_paraphrases"}
                                                                 : Sources{"gpt4_released", "gpt4_study"};
     const Sources expected = other == others.end() ? otherwise : other->second;

@@ -226,9 +226,6 @@ TEST(ErrandScenes, BadFilesAreRefusedWithTheirPlace) {
   };
   EXPECT_EQ(refused(arm({{"needed", {{3, 1}, {7, 1}}}})),
             "file: /tests/0/needed/1/0: expected a whole number from 0 to 5, got 7");
-  EXPECT_EQ(refused(arm({{"needed", {{1, 3}}}})),
-            "file: /tests/0/needed/0: expected takes that some scene needs which tells the pair's commands apart, got "
-            "[1,3]");
   EXPECT_NE(refused(arm({{"needed", Json::array()}})), "");
   EXPECT_NE(refused(arm({})), "");
   EXPECT_NE(refused(arm({{"needed", {{3, 1}}}, {"hard", true}})), "");
@@ -241,6 +238,15 @@ TEST(ErrandScenes, BadFilesAreRefusedWithTheirPlace) {
   EXPECT_NE(refused({{"commands", {{{"utterance", "Bring me a heart."}, {"truth", {{"target", heart}}}}}}},
                     "errands_fruit_shown_1"),
             "");
+}
+
+TEST(ErrandScenes, TakesThatNoSceneNeedsAreSaidInALineWhenScenesAreDrawn) {
+  Json json = load_scenario("errands_fruit").json;
+  json["tests"] = {{{"arm", "told"}, {"unseen", true}, {"needed", {{1, 3}}}}};
+  const Scenario scenario = read_scenario(json, "file");
+  EXPECT_EQ(
+      message_of<InputError>([&] { sample_scene(scenario, request("told"), 0); }),
+      "scenario \"errands_fruit\", arm told: expected a scene that shows how \"Bring me all the fruit.\" is meant");
 }
 
 std::vector<TestScene> tests_of(const Scenario& scenario, const std::string& arm, int n) {

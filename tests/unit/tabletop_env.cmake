@@ -1,5 +1,5 @@
 lgabench_unit_test(tabletop_env_test SOURCES tabletop_env_test.cpp tabletop_sweep_test.cpp tabletop_cue_test.cpp LINK lgabench_tabletop)
 add_dependencies(tabletop_env_test engines)
 lgabench_unit_test(tabletop_predicates_test SOURCES tabletop_predicates_test.cpp tabletop_stack_test.cpp LINK lgabench_tabletop)
-lgabench_unit_test(errands_test OPTIMISED SOURCES errands_test.cpp LINK lgabench_cell lgabench_tabletop)
+lgabench_unit_test(errands_test OPTIMISED SOURCES errands_test.cpp refusing_test.cpp LINK lgabench_cell lgabench_tabletop)
 add_dependencies(errands_test engines)

@@ -13,6 +13,7 @@ class ErrandsTask final : public PickAndPlace {
   }
   std::string example() const override { return "errands_fruit"; }
   int most_steps() const override { return 6; }
+  bool has_errand() const override { return true; }
   std::vector<std::string> scenario_members() const override { return {"classes", "pair", "scenes_of"}; }
   std::vector<std::string> scene_members() const override { return {"needed", "appears"}; }
   std::vector<Layout> layouts() const override { return {PickAndPlace::layouts()[1]}; }

@@ -281,7 +281,8 @@ Scenario read_scenario(const Json& json, const std::string& file) {
                                       read_probability(questions.at("errs"))};
   }
   if (reader.has("may_stop")) s.may_stop = reader.at("may_stop").boolean();
-  if (s.may_stop && task.most_steps == 1) reader.at("may_stop").fail("a task of several steps");
+  if (s.may_stop && task.most_steps == 1 && !contains(of_task, "may_stop"))  // a task of one step may know it, too
+    reader.at("may_stop").fail("a task of several steps");
   s.axes = read_plugin_axes(reader);
   for (const JsonReader& arm : reader.at("tests").elements()) {
     s.tests.push_back(

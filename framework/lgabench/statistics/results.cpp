@@ -28,16 +28,15 @@ namespace {
 // A name or a message as tables, pages and terminals may show it: it comes from a plugin, or from somebody else's run.
 std::string shown(const JsonReader& text) { return one_line(text.string()); }
 
-// The failures of an environment beside those that all runs know: of tasks of several steps and, of one that is a
-// plugin's, all. None where it is not there.
+// The failures of an environment beside those that all runs know: of its tasks and, of one that is a plugin's, all.
+// None where it is not there.
 std::set<std::string> further_words(const std::string& environment) {
   const EnvironmentType* const type = environment_if_there(environment);
   if (!type) return {};
   std::set<std::string> words;
   if (!contains(environment_ids(), environment)) words.insert(type->failures().begin(), type->failures().end());
   for (const TaskInfo& task : type->tasks()) {
-    if (task.most_steps == 1) continue;
-    words.insert(failure::goes_on);
+    if (task.most_steps > 1) words.insert(failure::goes_on);
     words.insert(task.failures.begin(), task.failures.end());
   }
   return words;

@@ -39,7 +39,7 @@ Scene PlayedScenes::scene(const Played& played, const std::string& arm, int inde
 
 Environment* PlayedScenes::on(const std::string& engine, const Scenario& scenario) {
   std::string world = scenario.space.id + scenario.environment->world_of(scenario);
-  if (find_task(*scenario.environment, scenario.task).most_steps > 1)
+  if (find_task(*scenario.environment, scenario.task).most_steps > 1 || scenario.may_stop)
     world += fmt::format(" {}{}", scenario.task, scenario.may_stop ? ", may stop" : "");
   for (const BodyVariant& body : body_variants(scenario))  // all of which one world holds, as it did in the cell
     world += fmt::format(" {},{},{}", body.scale, body.friction, body.mass);

@@ -32,11 +32,18 @@ bool is_within(const ActionDistance& distance, const PoseTolerance& tolerance) {
          distance.turn_rad <= tolerance.turn_deg * pi / 180;
 }
 
+// Whether one action decides each episode.
+bool has_one_action(const Scenario& scenario) {
+  return find_task(*scenario.environment, scenario.task).most_steps == 1 && !scenario.may_stop;
+}
+
 // The environment's task. @throws InputError where the environment does not compare actions by pose
-const TaskInfo& task_judged_by_pose(const EnvironmentType& type, const std::string& task) {
-  const TaskInfo& of = find_task(type, task);
-  if (of.most_steps > 1)
-    throw InputError(fmt::format("--judge pose: an episode of {} has several steps: no one action decides it", task));
+const TaskInfo& task_judged_by_pose(const Scenario& scenario) {
+  const EnvironmentType& type = *scenario.environment;
+  const TaskInfo& of = find_task(type, scenario.task);
+  if (!has_one_action(scenario))
+    throw InputError(fmt::format(
+        "--judge pose: an episode of {} has several steps or may have none: no one action decides it", scenario.task));
   const Action any(type.action_space().size(), 1);
   if (!type.distance(of, any, any))
     throw InputError(fmt::format("--judge pose: {} does not compare actions by pose", type.id()));
@@ -44,12 +51,12 @@ const TaskInfo& task_judged_by_pose(const EnvironmentType& type, const std::stri
 }
 
 // Other limits judge the end that an action leads to; within an episode of several steps they would have ended another.
-void expect_one_step(const EnvironmentType& type, const std::string& task) {
-  if (find_task(type, task).most_steps > 1)
+void expect_one_action(const Scenario& scenario) {
+  if (!has_one_action(scenario))
     throw InputError(
-        fmt::format("rescore: an episode of {} has several steps: with other limits it would have ended at "
-                    "another one",
-                    task));
+        fmt::format("rescore: an episode of {} has several steps or may have none: with other limits it would have "
+                    "ended at another one",
+                    scenario.task));
 }
 
 struct RescoreArguments {
@@ -80,7 +87,7 @@ Rescored by_physics(Environment& environment, const Scene& scene, const Episode&
   const StepResult end = carry_out(environment, scene, episode.actions());
   if (end.failure != episode.failure)
     return not_judged(fmt::format("ends as {} here, recorded as {}", end.failure, episode.failure));
-  if (environment.most_steps() > 1) return {end.failure};
+  if (environment.most_steps() > 1 || scene.errand) return {end.failure};
   const Rejudged again = environment.judged_again(limits);
   return {again.failure, again.distance_m};
 }
@@ -89,7 +96,7 @@ Rescored by_physics(Environment& environment, const Scene& scene, const Episode&
 Rescored by_pose(Environment& environment, const Scene& scene, const Scenario& scenario, const Episode& episode,
                  const PoseTolerance& within) {
   const EnvironmentType& type = *scenario.environment;
-  const TaskInfo& task = task_judged_by_pose(type, scenario.task);
+  const TaskInfo& task = task_judged_by_pose(scenario);
   environment.reset(scene);
   bool near = false;
   std::optional<double> distance_m;
@@ -214,8 +221,8 @@ int rescore(const RescoreArguments& a) {
     progress.tell_next();
     if (cell.failed) continue;
     const PlayedScenes::Played& played = scenes.cell((a.run / "cells" / cell.key / cell_file::configuration).string());
-    if (a.judge == "pose") task_judged_by_pose(*played.scenario.environment, played.scenario.task);
-    if (a.limits.position_m || a.limits.angle_deg) expect_one_step(*played.scenario.environment, played.scenario.task);
+    if (a.judge == "pose") task_judged_by_pose(played.scenario);
+    if (a.limits.position_m || a.limits.angle_deg) expect_one_action(played.scenario);
     for (const std::string& arm : cell.arms) {
       const auto is_row = [&](const ByRow& one) {
         return one.row == cell.method && one.arm == arm && one.demonstrations == cell.demonstrations;

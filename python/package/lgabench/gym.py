@@ -36,8 +36,9 @@ class _Reward:
     def __init__(self, mode: str, scenario: Scenario) -> None:
         if mode not in ("sparse", "dense"):
             raise ValueError(f"reward_mode {mode!r}: expected sparse or dense")
-        if mode == "dense" and scenario.most_steps > 1:
-            raise ValueError(f"reward_mode 'dense': an episode of {scenario.id} has several steps; expected sparse")
+        if mode == "dense" and (scenario.most_steps > 1 or scenario.may_stop):
+            several = "has several steps" if scenario.most_steps > 1 else "may have no step"
+            raise ValueError(f"reward_mode 'dense': an episode of {scenario.id} {several}; expected sparse")
         self.is_dense = mode == "dense"
 
     def __call__(self, success: bool, distance: Mapping[str, float]) -> float:
