@@ -172,6 +172,19 @@ def errands_shown():
     return commands("errands_shown") + table(["row", *(f"{n} demonstration{'' if n == 1 else 's'}" for n in ns)], lines)
 
 
+REFUSING = {"human+policy=point": "truth", "human": "truth, heat map learned", "lga+policy=point": "LGA", "lga": "LGA, heat map learned",
+            "taken_names": "names of what was taken", "taken_features": "what was taken", "gcbc_seg": "GCBC-SEG", "stops_at_once": "done at once",
+            "random_object": "random visible object"}
+
+
+def refusing():
+    """Right refusals where nothing is meant, and right takes on the same table with one thing exchanged."""
+    rows = {(row["method"], row["arm"]): row for row in RUNS["refusing"]["rows"]}
+    both = lambda row: [f"{number(one['success'])} [{interval(one)}]" for one in (rows[row, "gone"], rows[row, "control"])]
+    return commands("refusing") + table(["row", *(ABOUT["refusing"]["arm_titles"][arm] for arm in ("gone", "control"))],
+                                        [[name, *both(row)] for row, name in REFUSING.items()])
+
+
 PICTURED = {"human": "the truth", "lga": "LGA", "taken_features": "most demonstrated names", "gcbc_seg": "GCBC-SEG",
             "taken_colours": "colours of what was taken", "oracle": "Oracle", "random_object": "random object in view"}
 READ = "human", "lga", "taken_features"  # the others' masks need no names
@@ -333,7 +346,7 @@ def rewritten(page):
     """The page's text with each marked table made anew."""
     tables = {"instruction": instruction, "fidelity": fidelity, "unseen_seed": unseen_seed, "persons": persons,
               **{f"persons_{run}": lambda run=run: persons(f"persons_{run}") for run in ("lists", "hints", "policy")}, "pictures": pictures,
-              "reading": reading, "speed": lambda: (MEASURED / "speed.txt").read_text(), "perturbations_read": perturbations_read,
+              "reading": reading, "errands": errands, "errands_shown": errands_shown, "refusing": refusing, "speed": lambda: (MEASURED / "speed.txt").read_text(), "perturbations_read": perturbations_read,
               "rivals": lambda: rivals(page.stem),
               "leaks": lambda: leaks(page.stem), "moves": moves}
     made = lambda name: tables[name]() if name in tables else read_off(name)
