@@ -79,10 +79,10 @@ class PythonEnvironments(PythonCase):
         self.assertIn("failed", said)
 
     def test_a_changed_file_computes_its_cells_again(self):
-        self.run_suite()
-        self.assertIn("0 cells computed", self.run_suite("--resume").stderr)
+        self.run_suite("--no-reference")
+        self.assertIn("0 cells computed", self.run_suite("--no-reference", "--resume").stderr)
         self.change("GAIN = 20, .3", "GAIN = 20, .35")
-        self.assertIn(" 0 reused", self.run_suite("--resume").stderr)
+        self.assertIn(" 0 reused", self.run_suite("--no-reference", "--resume").stderr)
 
     def test_a_space_of_ones_own(self):
         space = {"object_types": ["round"], "textures": ["red", "green", "blue", "yellow", "purple", "orange"]}
@@ -91,15 +91,15 @@ class PythonEnvironments(PythonCase):
         self.change("space = \"tabletop\"", "space = \"discs\"")
         for scenario in self.dir.glob("mine/my_world_*d.json"):
             scenario.write_text(scenario.read_text().replace("\"tabletop\"", "\"discs\""))
-        self.run_suite()
+        self.run_suite("--no-reference")
         self.assertEqual({status["state"] for _, status in self.cells("run").values()}, {"ok"})
         file.write_text(json.dumps({**space, "object_types": ["round", "square"]}))
-        self.assertIn("same settings, other data or versions", self.run_suite("--resume", expect=2).stderr)
+        self.assertIn("same settings, other data or versions", self.run_suite("--no-reference", "--resume", expect=2).stderr)
         file.write_text(json.dumps({**space, "object_types": ["round", "round"]}))
-        self.assertIn("discs.json: /object_types: expected names, each once", self.run_suite("--fresh", expect=2).stderr)
+        self.assertIn("discs.json: /object_types: expected names, each once", self.run_suite("--no-reference", "--fresh", expect=2).stderr)
         file.unlink()
         self.call("report", "run")
-        self.assertIn("feature space \"discs\"", self.run_suite("--fresh", expect=2).stderr)
+        self.assertIn("feature space \"discs\"", self.run_suite("--no-reference", "--fresh", expect=2).stderr)
 
     def test_sample_reads_distractors_and_near_misses(self):
         code = """if True:
@@ -141,45 +141,42 @@ class PythonEnvironments(PythonCase):
 
 
 class BrokenPythonEnvironments(PythonCase):
-    def reason(self, *more):
-        """Why the cells of the task reach_blind failed; those of the other task, in the same run, did not."""
-        self.run_suite("--no-reference", *more, expect=3)
-        ended = {cell["scenario"]["id"]: status for cell, status in self.cells("run").values()}
-        self.assertEqual(ended["my_world_red"]["state"], "ok")
-        self.assertEqual(ended["my_world_blind"]["state"], "failed")
-        return ended["my_world_blind"]["reason"]
+    # What reset() does in a scenario of this name -> why the cell fails.
+    COSTS = {
+        "killed": ("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", r"signal 9 \(Killed\)"),
+        "ends": ("import os; os._exit(7)", "exited with 7"),
+        "hangs": ("import time; time.sleep(1000)", r"did not answer within 6 s \(its time_limit_s\)"),
+        "floods": ("while True: print('x' * 100000)", "did not answer within 6 s"),
+        "fills": ("self.all = [bytearray(b'x' * (1 << 26)) for _ in range(1000)]", r"out of memory: it may take 0.5 GiB \(its memory_gib\)"),
+        "writes": ("import os; os.write(3, b'x' * 100)", "does it write to descriptor 3"),
+        "connects": ("import socket; socket.create_connection(('127.0.0.1', 9))", r"PermissionError: .* \(my_world.py:\d+\)")}
 
-    def costs_a_cell(self, code, says):
-        self.change("    def reset(self, scene):\n", f"    def reset(self, scene):\n        if scene.task == 'reach_blind':\n            {code}\n")
-        self.assertRegex(self.reason(), r"environment my_world: scene \d of \w+: reset\(\): .*" + says)
+    def test_each_costs_its_own_cell_alone(self):
+        self.change("    most_instances = 4", "    most_instances = 4\n    time_limit_s = 6\n    memory_gib = .5")
+        self.change("    def reset(self, scene):\n", "    def reset(self, scene):\n" + "".join(
+            f"        if scene.scenario == '{name}':\n            {code}\n" for name, (code, _) in self.COSTS.items()))
+        blind, suite = (json.loads((self.dir / f"mine/my_world_{name}.json").read_text()) for name in ("blind", "suite"))
+        for name in self.COSTS:
+            (self.dir / f"mine/{name}.json").write_text(json.dumps({**blind, "id": name}))
+        (self.dir / "mine/my_world_suite.json").write_text(json.dumps({**suite, "scenarios": ["my_world_red", *self.COSTS]}))
+        self.run_suite("--no-reference", expect=3)
+        ended = {cell["scenario"]["id"]: (key, status) for key, (cell, status) in self.cells("run").items()}
+        self.assertEqual(ended.pop("my_world_red")[1]["state"], "ok")
+        self.assertEqual(set(ended), set(self.COSTS))
+        for name, (_, says) in self.COSTS.items():
+            with self.subTest(name):
+                self.assertEqual(ended[name][1]["state"], "failed")
+                self.assertRegex(ended[name][1]["reason"], r"environment my_world: scene \d of \w+: reset\(\): .*" + says)
+        log = self.dir / "run/cells" / ended["floods"][0] / "log.txt"
+        self.assertLess(log.stat().st_size, 40 << 20)
+        self.assertIn("the rest is dropped", log.read_text())
 
-    def test_one_that_is_killed(self):
-        self.costs_a_cell("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", r"signal 9 \(Killed\)")
-
-    def test_one_that_ends_itself(self):
-        self.costs_a_cell("import os; os._exit(7)", "exited with 7")
-
-    def test_one_that_hangs(self):
-        self.change("    most_instances = 4", "    most_instances = 4\n    time_limit_s = 20")
-        self.costs_a_cell("import time; time.sleep(1000)", r"did not answer within 20 s \(its time_limit_s\)")
-
-    def test_one_that_floods_its_log(self):
-        self.change("    most_instances = 4", "    most_instances = 4\n    time_limit_s = 20")
-        self.costs_a_cell("while True: print('x' * 100000)", "did not answer within 20 s")
-        logs = [file.read_text() for file in self.dir.glob("run/cells/*/log.txt") if file.stat().st_size < 40 << 20]
-        self.assertTrue(any("the rest is dropped" in log for log in logs))
-
-    def test_one_that_fills_memory(self):
-        self.change("    most_instances = 4", "    most_instances = 4\n    memory_gib = .5")
-        self.costs_a_cell("self.all = [bytearray(b'x' * (1 << 26)) for _ in range(1000)]", r"out of memory: it may take 0.5 GiB \(its memory_gib\)")
-
-    def test_one_that_writes_to_its_channel(self):
-        self.costs_a_cell("import os; os.write(3, b'x' * 100)", "does it write to descriptor 3")
-
-    def test_it_reaches_no_network_unless_it_says_so(self):
-        self.costs_a_cell("import socket; socket.create_connection(('127.0.0.1', 9))", r"PermissionError: .* \(my_world.py:\d+\)")
+    def test_it_reaches_the_network_where_it_says_so(self):
+        self.change("    def reset(self, scene):\n", f"    def reset(self, scene):\n        {self.COSTS['connects'][0]}\n")
         self.change("    most_instances = 4", "    most_instances = 4\n    network = True")
-        self.assertIn("ConnectionRefusedError", self.reason("--fresh"))
+        self.run_suite("--no-reference", "--scenarios", "my_world_red", expect=3)
+        (_, status), = self.cells("run").values()
+        self.assertIn("ConnectionRefusedError", status["reason"])
 
     def test_each_bad_value_has_words(self):
         for old, new, says in (

@@ -339,8 +339,8 @@ class PythonMethods(Case):
     def test_what_selects_alone_is_asked_for_nothing_else(self):
         (self.dir / "alone.py").write_text(ALONE)
         rows = "lga,selected_by:lga,selected_by:alone.py:Alone,selected_by:late.py:Late"
-        (self.dir / "late.py").write_text(LATE)
-        self.call(*RUN, "--methods", rows, "--set", "*.policy=heat_map", "--set", "*.epochs=20", "--out", "out")
+        (self.dir / "late.py").write_text(LATE.replace("== 10", "== 2"))
+        self.call(*with_options(RUN, "--demos", "2"), "--methods", rows, "--set", "*.policy=heat_map", "--out", "out")
         self.assert_matches_schemas("out")
         cells = {cell["method"]["name"]: (self.dir / "out/cells" / key, cell, status)
                  for key, (cell, status) in self.cells("out").items()}

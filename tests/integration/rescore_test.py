@@ -10,7 +10,7 @@ import case
 
 Q1 = ("run", "q1", "--scenarios", "heart,rotate_block", "--methods", "lga+policy=heat_map",
       "--demos", "3", "--seeds", "0", "--episodes", "6", "--layout", "cells")
-MOBILE = ("run", "mobile", "--preset", "smoke", "--episodes", "4", "--methods", "lga+policy=centroid")
+MOBILE = ("run", "mobile", "--preset", "smoke", "--scenarios", "bring_fruit", "--episodes", "4", "--methods", "lga+policy=centroid")
 
 
 class Rescore(case.BesideOneRun):

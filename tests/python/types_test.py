@@ -4,6 +4,7 @@ import importlib.util
 import inspect
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -116,14 +117,18 @@ class Docstrings(unittest.TestCase):
 
 
 class Types(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.cache = tempfile.mkdtemp(prefix="lgabench-test-")  # what NumPy declares is read once
+        cls.addClassCleanup(shutil.rmtree, cls.cache)
+
     def mypy(self, *words):
         build = pathlib.Path(os.environ["LGABENCH_BUILD"])
         environment = os.environ | {"MYPYPATH": f"{SOURCE / 'python'}:{build / 'python'}"}
-        with tempfile.TemporaryDirectory() as cache:
-            done = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--allow-any-generics",
-                                   "--follow-imports=silent", "--disable-error-code=import-untyped",
-                                   "--disable-error-code=import-not-found",  # harnesses, which ./test --full alone has
-                                   f"--cache-dir={cache}", *words], capture_output=True, text=True, timeout=600, env=environment)
+        done = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--allow-any-generics",
+                               "--follow-imports=silent", "--disable-error-code=import-untyped",
+                               "--disable-error-code=import-not-found",  # harnesses, which ./test --full alone has
+                               f"--cache-dir={self.cache}", *words], capture_output=True, text=True, timeout=600, env=environment)
         return done.stdout
 
     def test_a_strict_checker_takes_the_packages_and_a_method(self):
