@@ -7,7 +7,7 @@ import math
 import pathlib
 import unittest
 
-from case import BUILD, Case
+from case import BUILD, FULL, Case
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2] / "examples/reach2d"
 FOUND = {"LGABENCH_PLUGIN_PATH": str(BUILD / "tests/plugins/examples"), "LGABENCH_SCENARIO_PATH": str(SOURCE)}
@@ -45,6 +45,7 @@ class Steps(Case):
                 for line in (cell / "episodes.jsonl").read_text().splitlines():
                     yield cell.name, json.loads(line)
 
+    @unittest.skipUnless(FULL, "./test --full plays it")  # two minutes of learning
     def test_a_state_is_worth_what_it_says(self):
         self.run_suite(*LEARNS)
         rows = {(row["method"], row["scenario"]): row for row in json.loads((self.dir / "run/summary.json").read_text())["rows"]}
