@@ -267,6 +267,7 @@ TEST(RecordedAnswers, AreEachScenariosOwn) {
     const Sources otherwise = id.rfind("words_", 0) == 0        ? Sources{"claude_words", "claude_words"}
                               : id.rfind("drawn_", 0) == 0      ? Sources{"claude_drawn", "claude_drawn"}
                               : id.rfind("refusing_", 0) == 0   ? Sources{"claude_track", "claude_track"}
+                              : id.rfind("errands_", 0) == 0    ? Sources{"errands/claude", "errands/claude"}
                               : id.rfind("paraphrase_", 0) == 0 ? Sources{"claude_paraphrases", "claude_paraphrases"}
                                                                 : Sources{"gpt4_released", "gpt4_study"};
     const Sources expected = other == others.end() ? otherwise : other->second;
