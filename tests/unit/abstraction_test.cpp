@@ -326,7 +326,8 @@ TEST(RecordedAnswers, ThatAreMissingAreAnErrorAndNeverANo) {
   EXPECT_SAYS(
       message_of<InputError>([] { ask(scenario("heart", "Bring me the heart."), "gpt4"); }),
       "expected recorded or one of claude, claude_clutter, claude_drawn, claude_fetch, claude_instruction, "
-      "claude_paraphrases, claude_track, claude_unheard, claude_words, gpt4_released, gpt4_study, got \"gpt4\"");
+      "claude_paraphrases, claude_track, claude_unheard, claude_words, gpt4_released, gpt4_study, errands/claude, got "
+      "\"gpt4\"");
   // Nobody was asked what to avoid when bringing a heart.
   EXPECT_THROW(ask(scenario("heart", "Bring me the heart.", "sweep"), "gpt4_released"), MethodError);
 
