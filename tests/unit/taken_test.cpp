@@ -29,7 +29,11 @@ TEST(Taken, IsTheOraclesTargetInEveryTask) {
             EXPECT_TRUE(label.empty() && !found) << id << ": nothing that is meant is there";
             continue;
           }
-          EXPECT_EQ(found, scene.find("target")->instance_id) << id << " " << layout << " " << i;
+          const bool targets =
+              std::any_of(scene.objects.begin(), scene.objects.end(), [&found](const SceneObject& one) {
+                return found == one.instance_id && one.role == "target";  // in an errand several are wanted at first
+              });
+          EXPECT_TRUE(targets) << id << " " << layout << " " << i;
           const SceneObject* const receiver = scene.find("receiver");
           EXPECT_EQ(receiving({seen, label}, actions_of(scenario)),
                     receiver ? std::optional(receiver->instance_id) : std::nullopt)
