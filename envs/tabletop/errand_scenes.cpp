@@ -158,8 +158,10 @@ void read_to_refuse(const Scenario& scenario, const JsonReader& file, const Json
   const Meaning& meant = scenario.commands.front().truth.target;
   if (commands.size() != 1) file.at("commands").fail("one command");
   if (meant.which || !meant.turns.empty()) commands.front().at("truth").at("target").fail("sets of objects alone");
-  ErrandClass all = pools_of({meant.sets}, read_list(file.at("near_miss_sets"), scenario.space),
-                             read_list(file.at("undecided"), scenario.space), scenario.space);
+  ErrandClass all =
+      pools_of({meant.sets}, read_list(file.at("near_miss_sets"), scenario.space),
+               file.has("undecided") ? read_list(file.at("undecided"), scenario.space) : std::vector<FeatureSet>(),
+               scenario.space);
   if (!shows_all(all.members)) commands.front().at("truth").at("target").fail("sets of what scenes can show");
   if (all.near.empty()) file.at("near_miss_sets").fail("what scenes can show and the command does not mean");
   errands.classes.push_back(std::move(all));

@@ -57,7 +57,7 @@ def shown(scenario, group):
 def refusing(one):
     of = json.loads((FOLDER / f"{one['of']}.json").read_text())
     return {"id": one["id"], "environment": "tabletop", "task": "refusing", "feature_space": of["feature_space"], "may_stop": True,
-            "answers": {"recorded": "claude_track"}, **{key: one[key] for key in ("near_miss_sets", "undecided")},
+            "answers": {"recorded": "claude_track"}, **{key: one[key] for key in ("near_miss_sets", "undecided") if one[key]},
             "train": {"as_method_asks": False}, "commands": of["commands"],
             "tests": [{"arm": "gone", "is_there": False}, {"arm": "control", "is_there": True}],
             "note": f"The command of {one['of']}. Nothing that it means stands there, or one thing in another's place."}

@@ -92,6 +92,7 @@ TEST_F(WithoutWeights, TheShippedCommandsAndSelectionsHaveEmbeddings) {
   for (const std::string& id : scenario_ids()) {
     const Scenario s = load_scenario(id);
     if (!s.json.contains("answers")) continue;  // an example: nobody was asked about it
+    if (s.task == "errands") continue;          // none of its rows reads sentences
     for (std::size_t c = 0; c < s.commands.size(); ++c) {
       std::vector<std::string> sentences{s.commands[c].utterance, selection_text(s.commands[c].truth, s.space)};
       for (const std::string& source : recorded_sources()) {
