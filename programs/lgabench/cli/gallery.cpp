@@ -53,7 +53,9 @@ Tile alone(const JsonReader& object) {
   object.only({"scenario", "object_type", "texture"});
   const Scenario scenario = load_scenario(object.at("scenario").string());
   Scene scene = test_scene(scenario, layouts_of(scenario).front(), scenario.tests.front().id, 0, 0);
-  SceneObject shown = *scene.find(role::target);
+  const SceneObject* const target = scene.find(role::target);
+  if (!target) object.at("scenario").fail("a scenario in whose first scene something is meant");
+  SceneObject shown = *target;
   shown.object_type = object.at("object_type").string();
   shown.texture = object.at("texture").string();
   scene.objects = {shown};
