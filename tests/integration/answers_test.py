@@ -259,7 +259,7 @@ class Cassettes(Asking):
     def test_what_is_no_cassette_of_one_model_is_refused(self):
         run = ["run", self.suite, *RUN, "--out", "out", "--answers"]
         for word in ("gpt5", "gpt4"):
-            self.assertIn("--answers: expected recorded, claude, claude_clutter, claude_drawn, claude_fetch, claude_instruction, claude_paraphrases, claude_track, claude_unheard, claude_words, gpt4_released, gpt4_study, openai, none, cassette:FILE or FILE.json",
+            self.assertIn("--answers: expected recorded, claude, claude_clutter, claude_drawn, claude_fetch, claude_instruction, claude_paraphrases, claude_track, claude_unheard, claude_words, gpt4_released, gpt4_study, errands/claude, openai, none, cassette:FILE or FILE.json",
                           self.call(*run, word, expect=2).stderr)
         (self.dir / "empty.jsonl").write_text("")
         self.assertIn("expected replies of one model, it has none", self.call(*run, "cassette:empty.jsonl", expect=2).stderr)
