@@ -552,7 +552,8 @@ std::optional<Scenario> with_unseen_commands(const std::string& environment) {
   for (const std::string& id : scenario_ids()) {
     Scenario scenario = load_scenario(id);
     if (!environment.empty() && scenario.environment->id() != environment) continue;
-    if (scenario.may_stop && scenario.environment->tasks().front().most_steps == 1) continue;  // no policy is told there
+    // No policy of the environment's first task is told that it may stop.
+    if (scenario.may_stop && scenario.environment->tasks().front().most_steps == 1) continue;
     for (const ScenarioCommand& command : scenario.commands)
       if (!command.seen) return scenario;
   }
