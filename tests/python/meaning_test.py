@@ -74,7 +74,7 @@ class Meanings(unittest.TestCase):
                     numpy.testing.assert_array_equal(env.expert_action(found), action)
                     self.assertEqual(taken(Step(scene, action), layout), found)
                     self.assertIsNone(taken(Step(scene, action[:0]), layout), "nothing is left to do")
-        self.assertEqual(tasks, {"pick_and_place", "rotate", "sweep", "stack", "bring", "throw_away", "fetch"})
+        self.assertEqual(tasks, {"pick_and_place", "rotate", "sweep", "stack", "bring", "throw_away", "fetch", "errands", "refusing"})
 
     def test_the_object_meant_is_the_samplers_target(self):
         """Of every command of the suite words: C++ made a target of what its own grounding finds."""
