@@ -21,8 +21,10 @@
 #include <lgabench/cell/steps.hpp>
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
+#include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/core/scenario_files.hpp>
 #include <lgabench/host/hosted_method.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
@@ -547,15 +549,22 @@ class MethodCheck {
   HostedMethod method_;
 };
 
-// The first scenario that tests commands which were not demonstrated; none where the environment ("": any) has none.
+// As its file says it: a scenario of errands takes long to load.
+bool has_unseen_commands(const std::string& id) {
+  const Json file = read_json(scenario_file(id));
+  if (!file.is_object() || !file.contains("commands") || file.value("may_stop", Json(false)) == true) return false;
+  const Json& commands = file["commands"];
+  return std::any_of(commands.begin(), commands.end(),
+                     [](const Json& one) { return one.is_object() && one.contains("seen") && one["seen"] == false; });
+}
+
+// The first scenario that tests commands which were not demonstrated, and in which no policy may stop; none where the
+// environment ("": any) has none.
 std::optional<Scenario> with_unseen_commands(const std::string& environment) {
   for (const std::string& id : scenario_ids()) {
+    if (!has_unseen_commands(id)) continue;
     Scenario scenario = load_scenario(id);
-    if (!environment.empty() && scenario.environment->id() != environment) continue;
-    // No policy of the environment's first task is told that it may stop.
-    if (scenario.may_stop && scenario.environment->tasks().front().most_steps == 1) continue;
-    for (const ScenarioCommand& command : scenario.commands)
-      if (!command.seen) return scenario;
+    if (environment.empty() || scenario.environment->id() == environment) return scenario;
   }
   return std::nullopt;
 }
