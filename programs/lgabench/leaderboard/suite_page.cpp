@@ -91,7 +91,10 @@ void mark_more(std::vector<NamedStanding>& standings) {
     const std::string answers = s.entry->has_answers_as_submitted() ? s.entry->identity.answers_sha256 : "";
     const Identity& identity = s.entry->identity;
     const std::string untrained = policy_of(*s.entry) == "centroid" ? " untrained" : "";
-    s.more = !known.insert(identity.row.own_name() + identity.conditions.suffix() + " " + answers + untrained).second;
+    s.more = !known
+                  .insert(fmt::format("{}{} {}{}", identity.row.own_name(), identity.conditions.suffix(), answers,
+                                      untrained))
+                  .second;
   }
 }
 
