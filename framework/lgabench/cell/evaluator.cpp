@@ -65,8 +65,8 @@ Episode play(Environment& environment, const TestScene& test, const Actor& actor
   if (test.view != View()) observation = environment.look(test.view);
   std::vector<Named> brought;  // as the actor was told it when it was taken
   for (int step = 0;; ++step) {
-    Observation perceived = observation;
-    if (test.perception) perceived = test.perception(observation, scene, step);  // a plugin's fault is no method's
+    // A plugin's fault is no method's.
+    Observation perceived = test.perception ? test.perception(observation, scene, step) : observation;
     perceived.brought = brought;
     try {
       Observation given;
