@@ -36,8 +36,7 @@ bool is_disputed(const DisputedPairs& pairs, const Scenario& scenario, const Sce
   std::vector<std::uint8_t> ids;
   for (const SceneObject& object : scene.objects)
     if (!is_place(object.object_type) && !(scenario.second && object.role == scenario.second->id) &&
-        std::any_of(found->second.begin(), found->second.end(),
-                    [&](const FeatureSet& set) { return set.contains(object.object_type, object.texture); }))
+        any_contains(found->second, object.object_type, object.texture))
       ids.push_back(object.instance_id);
   if (ids.empty()) return false;
   const Observation seen = scenario.environment->draw(scene, view_of(scenario, scene));

@@ -82,6 +82,11 @@ bool FeatureSet::contains(const std::string& object_type, const std::string& tex
   return lgabench::contains(object_types, object_type) && lgabench::contains(textures, texture);
 }
 
+bool any_contains(const std::vector<FeatureSet>& sets, const std::string& object_type, const std::string& texture) {
+  return std::any_of(sets.begin(), sets.end(),
+                     [&](const FeatureSet& set) { return set.contains(object_type, texture); });
+}
+
 bool operator==(const FeatureSet& a, const FeatureSet& b) {
   return a.object_types == b.object_types && a.textures == b.textures;
 }

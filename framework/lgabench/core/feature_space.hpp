@@ -27,6 +27,8 @@ struct FeatureSet {
   bool empty() const { return object_types.empty() || textures.empty(); }
 };
 bool operator==(const FeatureSet& a, const FeatureSet& b);
+/// Whether both features are in any one of the sets.
+bool any_contains(const std::vector<FeatureSet>& sets, const std::string& object_type, const std::string& texture);
 
 Json to_json(const FeatureSet& set);
 

@@ -204,8 +204,7 @@ const FeatureSet& Meaning::product() const {
 }
 
 bool Meaning::belongs(const std::string& object_type, const std::string& texture) const {
-  return std::any_of(sets.begin(), sets.end(),
-                     [&](const FeatureSet& set) { return set.contains(object_type, texture); });
+  return any_contains(sets, object_type, texture);
 }
 
 bool Meaning::empty() const {

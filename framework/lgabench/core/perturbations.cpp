@@ -254,9 +254,7 @@ int command_given(const Scene& scene, const Scenario& scenario, std::optional<st
 }
 
 bool means(const ScenarioCommand& command, const SceneObject& object) {
-  const std::vector<FeatureSet>& sets = command.truth.target.sets;
-  return std::any_of(sets.begin(), sets.end(),
-                     [&object](const FeatureSet& set) { return set.contains(object.object_type, object.texture); });
+  return command.truth.target.belongs(object.object_type, object.texture);
 }
 
 std::string arm_of(const Perturbation& perturbation) {

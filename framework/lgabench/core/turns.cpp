@@ -17,11 +17,6 @@ const std::string& name_of(const Named& object, Part part) {
   return part == Part::object_type ? object.object_type : object.texture;
 }
 
-bool belongs(const Turn& turn, const Named& object) {
-  return std::any_of(turn.sets.begin(), turn.sets.end(),
-                     [&object](const FeatureSet& set) { return set.contains(object.object_type, object.texture); });
-}
-
 // Objects that no turn tells apart are of one kind, so that a search has few.
 class Kinds {
  public:
@@ -29,7 +24,7 @@ class Kinds {
 
   std::size_t of(const Named& object) {
     Kind kind;
-    for (const Turn& turn : turns_) kind.in.push_back(belongs(turn, object));
+    for (const Turn& turn : turns_) kind.in.push_back(any_contains(turn.sets, object.object_type, object.texture));
     for (const Part part : {Part::object_type, Part::texture})
       for (const Turn& turn : turns_)
         if (contains(turn.same, part) || contains(turn.different, part))

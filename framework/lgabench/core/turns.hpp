@@ -7,11 +7,11 @@
 namespace lgabench {
 
 // Turns are fulfilled one after the other, each by what was brought next:
-// - a turn that takes so many takes exactly these; one without a number takes until no other object could join;
-// - a turn found nothing if it took nothing: nothing of its sets was there, or fewer than it takes that fit together;
-// - a turn `only_if_nothing` is left out unless the turn before found nothing. Without such a turn after it, a turn
-// that
+// - A turn that takes so many takes exactly these. One without a number takes until no other object could join.
+// - A turn found nothing if it took nothing: nothing of its sets was there, or fewer than it takes that fit together.
+// - A turn `only_if_nothing` is left out unless the turn before found nothing. Where no such turn follows, a turn that
 //   takes so many must take them.
+//
 // What a later turn took was on the table before. What appears later counts as if it had been there from the beginning.
 // A meaning without turns is one object of its sets. The order of `brought` counts, that of `on_table` does not.
 
