@@ -30,11 +30,6 @@ namespace {
 
 constexpr int tries = 20'000;
 
-bool holds(const std::vector<FeatureSet>& sets, const Named& one) {
-  return std::any_of(sets.begin(), sets.end(),
-                     [&one](const FeatureSet& set) { return set.contains(one.object_type, one.texture); });
-}
-
 // The pair that the command's, or two of the commands, are of.
 std::vector<Meaning> read_pair(const Scenario& scenario, const JsonReader& file) {
   const std::vector<JsonReader> commands = file.at("commands").elements();
@@ -81,13 +76,12 @@ ErrandClass pools_of(const std::vector<std::vector<FeatureSet>>& parts, const st
   for (const std::string& type : space.object_types) {
     if (!can_show(type, Content::widest_in_crowd_m)) continue;
     for (const std::string& texture : space.textures) {
-      const Named one{type, texture};
-      if (holds(undecided, one)) continue;
+      if (any_contains(undecided, type, texture)) continue;
       for (std::size_t i = 0; i < parts.size(); ++i)
-        if (holds(parts[i], one)) all.members[i].add(type, texture);
-      if (holds(all.sets, one)) continue;
+        if (any_contains(parts[i], type, texture)) all.members[i].add(type, texture);
+      if (any_contains(all.sets, type, texture)) continue;
       all.others.front().add(type, texture);
-      if (holds(near, one)) all.near.add(type, texture);
+      if (any_contains(near, type, texture)) all.near.add(type, texture);
     }
   }
   return all;
@@ -153,7 +147,7 @@ void read_needed(const JsonReader& reader, Errands& errands) {
 }
 
 // A command that means one thing, which may not be there.
-void read_to_refuse(const Scenario& scenario, const JsonReader& file, const JsonReader* scenes, Errands& errands) {
+void read_to_refuse(const Scenario& scenario, const JsonReader& file, Errands& errands) {
   const std::vector<JsonReader> commands = file.at("commands").elements();
   const Meaning& meant = scenario.commands.front().truth.target;
   if (commands.size() != 1) file.at("commands").fail("one command");
@@ -166,24 +160,34 @@ void read_to_refuse(const Scenario& scenario, const JsonReader& file, const Json
   if (all.near.empty()) file.at("near_miss_sets").fail("what scenes can show and the command does not mean");
   errands.classes.push_back(std::move(all));
   errands.class_of.push_back(0);
-  if (!errands.training) errands.is_there = scenes->at("is_there").boolean();
+}
+
+// What training and all arms have in common.
+std::shared_ptr<const Errands> read_training(const Scenario& scenario, const JsonReader& file) {
+  auto errands = std::make_shared<Errands>();
+  errands->scenes_of = file.has("scenes_of") ? file.at("scenes_of").string() : scenario.id;
+  errands->training = true;
+  errands->refusing = find_task(scenario.task).most_steps() == 1;
+  if (errands->refusing) {
+    read_to_refuse(scenario, file, *errands);
+  } else {
+    errands->pair = read_pair(scenario, file);
+    read_classes(scenario, file, *errands);
+  }
+  return errands;
 }
 
 }  // namespace
 
 std::shared_ptr<const Errands> read_errands(const Scenario& scenario, const JsonReader& file, const JsonReader* scenes,
                                             bool training) {
-  auto errands = std::make_shared<Errands>();
-  errands->scenes_of = file.has("scenes_of") ? file.at("scenes_of").string() : scenario.id;
-  errands->training = training;
-  errands->refusing = find_task(scenario.task).most_steps() == 1;
+  if (training) return read_training(scenario, file);
+  auto errands = std::make_shared<Errands>(*content_of(*scenario.train).errands);
+  errands->training = false;
   if (errands->refusing) {
-    read_to_refuse(scenario, file, scenes, *errands);
+    errands->is_there = scenes->at("is_there").boolean();
     return errands;
   }
-  errands->pair = read_pair(scenario, file);
-  read_classes(scenario, file, *errands);
-  if (training) return errands;
   const bool unseen = scenes->has("unseen") && scenes->at("unseen").boolean();
   if (unseen == file.has("pair"))
     scenes->at("arm").fail(unseen ? "no \"unseen\" where a \"pair\" is given" : "\"unseen\": true beside it");

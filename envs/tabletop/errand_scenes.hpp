@@ -7,8 +7,8 @@
 
 namespace lgabench::tabletop {
 
-/// What the scenes of an arm, or those to train on, show and for which pair of commands. @throws InputError with file
-/// and place of a pair that is none, and of numbers of takes that no scene needs.
+/// What the scenes of an arm, or those to train on, show and for which pair of commands. @pre of an arm: those to train
+/// on were read. @throws InputError with file and place of a pair that is none, and of impossible numbers of takes.
 std::shared_ptr<const Errands> read_errands(const Scenario& scenario, const JsonReader& file, const JsonReader* scenes,
                                             bool training);
 
