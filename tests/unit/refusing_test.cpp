@@ -104,7 +104,7 @@ TEST(Refusing, BadFilesAreRefused) {
   EXPECT_EQ(why_refused(Json::object()), "");
   EXPECT_SAYS(why_refused({{"may_stop", nullptr}}), "\"may_stop\": true");
   EXPECT_SAYS(why_refused({{"near_miss_sets", Json::array()}}), "/near_miss_sets: expected what scenes can show");
-  EXPECT_SAYS(why_refused({{"undecided", nullptr}}), "undecided");
+  EXPECT_SAYS(why_refused({{"undecided", "ring"}}), "/undecided: expected");
   EXPECT_SAYS(why_refused({{"tests", {{{"arm", "gone"}}}}}), "is_there");
   EXPECT_SAYS(why_refused({{"pair", Json::array()}}), "pair");
   Json commands = load_scenario("refusing_heart").json.at("commands");
