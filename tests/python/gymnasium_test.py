@@ -6,6 +6,9 @@ import json
 import os
 import pathlib
 import pickle
+import subprocess
+import sys
+import tempfile
 import unittest
 import warnings
 
@@ -331,6 +334,37 @@ class Versions(unittest.TestCase):
         self.assertEqual(other, [], "these show other bytes than their ids did: raise their versions with "
                                     "LGABENCH_WRITE_VERSIONS=1 ./test -R python.Versions")
         self.assertEqual(sorted(known), lgabench.scenarios())
+
+
+class InPython(unittest.TestCase):
+    """An environment that is a class in Python, of the template, in a process that finds it by its variables."""
+    INTERPRETER = os.environ.get("LGABENCH_TEST_PYTHON", "/usr/bin/python3")  # this one's NumPy may come from PYTHONPATH
+    PLAYED = """if True:
+        import gymnasium, lgabench
+        env = gymnasium.make("lgabench/my_world_red-v1", split="test")
+        rewards = []
+        for seed in (0, 1, 0):
+            obs, start = env.reset(seed=seed)
+            over = False
+            while not over:
+                obs, reward, terminated, truncated, info = env.step(env.unwrapped.expert_action())
+                over = terminated or truncated
+            rewards.append((reward, start["scene"], obs["rgb"].tobytes()))
+        assert [one[0] for one in rewards] == [1, 1, 1] and rewards[0] == rewards[2] != rewards[1]
+        vector = gymnasium.make_vec("lgabench/my_world_blind-v1", 2, threads=2)
+        vector.reset(seed=0)
+        vector.step(vector.action_space.sample())"""
+
+    def test_it_is_played(self):
+        if subprocess.run([self.INTERPRETER, "-c", "import numpy"], env={"PATH": os.environ["PATH"]}, capture_output=True).returncode != 0:
+            self.skipTest(f"{self.INTERPRETER} has no NumPy")
+        with tempfile.TemporaryDirectory() as folder:
+            new = [pathlib.Path(os.environ["LGABENCH_BUILD"]) / "bin/lgabench", "new-plugin", "my_world", "--kind", "environment", "--language", "python"]
+            subprocess.run(new, cwd=folder, check=True, capture_output=True)
+            mine = pathlib.Path(folder) / "my_world"
+            where = {"LGABENCH_PYTHON": self.INTERPRETER, "LGABENCH_SCENARIO_PATH": str(mine), "LGABENCH_PLUGIN_PATH": f"{mine}/my_world.py:MyWorld"}
+            done = subprocess.run([sys.executable, "-c", self.PLAYED], env={**os.environ, **where}, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
 
 
 if __name__ == "__main__":

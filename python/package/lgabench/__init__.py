@@ -7,6 +7,10 @@
 `import lgabench` registers "lgabench/heart-v1" and the other scenarios where Gymnasium is installed.
 """
 import importlib.util
+import os
+import sys
+
+os.environ.setdefault("LGABENCH_PYTHON", sys.executable)  # of environments in Python, as of methods
 
 from lgabench._core import EngineError, engines, scenarios, version as __version__
 from lgabench.evaluation import Result, evaluate

@@ -33,6 +33,7 @@
 #include <lgabench/core/resources.hpp>
 #include <lgabench/core/scenario_files.hpp>
 #include <lgabench/core/version.hpp>
+#include <lgabench/host/python_environment.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace nb = nanobind;
@@ -431,6 +432,8 @@ NB_MODULE(_core, m) {
       PyErr_SetString(PyExc_ValueError, e.what());
     }
   });
+  know_python_environments();
+  let_environments_start();
   m.attr("version") = LGABENCH_VERSION;
   m.def("data_directory", [] { return data_directory().string(); });
   m.def("scenarios", &scenario_ids, "Ids of the shipped scenarios, and of those in directories that were added.");
