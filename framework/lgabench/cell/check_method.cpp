@@ -10,10 +10,8 @@
 #include <regex>
 #include <utility>
 
-#include <lgabench/abstraction/human.hpp>
-#include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/abstraction/scenes.hpp>
-#include <lgabench/cell/answers.hpp>
+#include <lgabench/cell/answering.hpp>
 #include <lgabench/cell/check.hpp>
 #include <lgabench/cell/demonstrations.hpp>
 #include <lgabench/cell/evaluator.hpp>
@@ -35,61 +33,6 @@ constexpr int demonstrations = 10, scenes_an_arm = 5;
 constexpr std::uint64_t seed = 7;
 constexpr const char* determinism =
     "draw all random numbers from services.seed; use no clock, address, uninitialised value or number of threads";
-
-// Counts what is asked; or answers no to everything, as a model that sees nothing fitting would.
-class CountingModel : public LanguageModel {
- public:
-  CountingModel(LanguageModel& model, bool always_no) : model_(model), always_no_(always_no) {}
-  std::vector<bool> answer(const Command& command, const FeatureSpace& space,
-                           const std::vector<Question>& questions) override {
-    asked += static_cast<int>(questions.size());
-    std::vector<bool> answers = model_.answer(command, space, questions);
-    if (always_no_) std::fill(answers.begin(), answers.end(), false);
-    return answers;
-  }
-  Meaning mean(const Command& command, const FeatureSpace& space) override {
-    ++asked;
-    return always_no_ ? Meaning() : model_.mean(command, space);
-  }
-  std::vector<Hypothesis> hypotheses(const Command& command, const FeatureSpace& space) override {
-    ++asked;
-    return always_no_ ? std::vector<Hypothesis>() : model_.hypotheses(command, space);
-  }
-  std::string model() const override { return model_.model(); }
-  std::string asked_as(const Command& command) const override { return model_.asked_as(command); }
-  Provenance provenance() const override { return model_.provenance(); }
-  SelectionCost cost() const override { return model_.cost(); }
-
-  int asked = 0;
-
- private:
-  LanguageModel& model_;
-  bool always_no_;
-};
-
-// Answers with the truth, where nobody's answers are recorded.
-class TruthfulModel : public LanguageModel {
- public:
-  explicit TruthfulModel(const std::vector<ScenarioCommand>& commands) : truth_(commands) {}
-  std::vector<bool> answer(const Command& command, const FeatureSpace&,
-                           const std::vector<Question>& questions) override {
-    const Selection truth = truth_.specify(command);
-    std::vector<bool> answers;
-    for (const Question& question : questions) {
-      const FeatureSet& set = question.about == Question::About::target ? truth.target.product() : truth.second.value();
-      const auto& names = question.group == Question::Group::object_type ? set.object_types : set.textures;
-      answers.push_back(contains(names, question.candidate));
-    }
-    return answers;
-  }
-  std::vector<Hypothesis> hypotheses(const Command&, const FeatureSpace&) override { return {}; }
-  std::string model() const override { return "true distribution"; }
-  Provenance provenance() const override { return Provenance::truth; }
-  SelectionCost cost() const override { return {}; }
-
- private:
-  TruthAsHuman truth_;
-};
 
 struct Sight {
   Scene scene;
@@ -119,46 +62,6 @@ struct Bench {
   }
   bool is_seen(const Sight& sight) const {
     return scenario.commands[static_cast<std::size_t>(sight.scene.command)].seen;
-  }
-};
-
-// Whom the method may ask, as in a cell without people and with recorded answers, where there are any.
-struct Answering {
-  Answering(const Scenario& scenario, const HostJob& job, bool always_no = false)
-      : asked(in_scenes(scenario, job.options.contains("questions"))),
-        recorded(scenario, recorded_source(scenario, "recorded", job.plugin.asks == "edit")),
-        truthful(scenario.commands),
-        model(knows_all(scenario) ? static_cast<LanguageModel&>(recorded) : truthful, always_no),
-        human(people_of(asked, layouts_of(scenario).front(), seed, demonstrations, job.options), job.plugin.asks),
-        services{model,
-                 human,
-                 job.options,
-                 seed,
-                 log,
-                 actions_of(scenario),
-                 declared_truth(scenario.commands, job.plugin.asks)} {
-    services.state = state_of(scenario);
-    services.may_stop = scenario.may_stop;
-  }
-
-  Scenario asked;  // its people
-  RecordedLanguageModel recorded;
-  TruthfulModel truthful;
-  CountingModel model;
-  DeclaredHuman human;
-  TrainingLines log;
-  Services services;
-
- private:
-  // A method with a number of questions finds people who answer in scenes, whatever the scenario.
-  static Scenario in_scenes(Scenario scenario, bool asks) {
-    if (asks && !scenario.questions) scenario.questions = Scenario::Questions{4, 0};
-    return scenario;
-  }
-  bool knows_all(const Scenario& scenario) const {
-    for (std::size_t c = 0; c < scenario.commands.size(); ++c)
-      if (!recorded.knows(scenario.command(static_cast<int>(c)))) return false;
-    return true;
   }
 };
 
@@ -333,7 +236,7 @@ class MethodCheck {
     Use use;
     for (const auto& bench : benches) {
       const bool first = judged && bench == benches.front();
-      Answering asked(bench->scenario, job_);
+      Answering asked(bench->scenario, job_, demonstrations);
       Selected selected = select_all(bench->scenario, asked, "select");
       if (selected.needs.shadows) bench->look_again(selected.needs);
       if (first) judge_selection(selected, asked.model.asked, bench->scenario);
@@ -446,7 +349,7 @@ class MethodCheck {
 
   // Commands of other kinds than the first: nothing fits, and those that speak of a second set.
   void judge_other_commands(const Needs& needs, const Bench& bench) {
-    Answering nobody(bench.scenario, job_, true);
+    Answering nobody(bench.scenario, job_, demonstrations, true);
     std::string fault = thrown([&] { select_all(bench.scenario, nobody, "select with every answer no"); });
     report_.judge("empty Selection", fault.empty() ? "" : "select() threw: " + fault,
                   "select() handles a language model that answers no to everything",
@@ -457,7 +360,7 @@ class MethodCheck {
 
   void judge_second_set(const Needs& needs, const TaskInfo& task) {
     const Scenario scenario = load_scenario(task.example);
-    Answering asked(scenario, job_);
+    Answering asked(scenario, job_, demonstrations);
     Selection both;
     const std::string fault =
         thrown([&] { both = select_all(scenario, asked, "select for " + task.id).instructions.front().selection; });

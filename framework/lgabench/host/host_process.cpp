@@ -16,6 +16,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <fstream>
 #include <new>
 #include <set>
@@ -244,6 +245,18 @@ std::vector<std::string> HostProcess::started() const {
     if (pid != pid_ && !name.empty()) all.push_back(fmt::format("{} {}", pid, name));
   }
   return all;
+}
+
+ProcessUse HostProcess::used() const {
+  ProcessUse use;
+  clockid_t clock{};
+  timespec time{};
+  if (::clock_getcpuclockid(pid_, &clock) == 0 && ::clock_gettime(clock, &time) == 0)
+    use.cpu_s = static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  std::ifstream status(fmt::format("/proc/{}/status", pid_));
+  for (std::string line; std::getline(status, line);)
+    if (line.rfind("VmHWM:", 0) == 0) use.peak_bytes = std::atoll(line.c_str() + std::strlen("VmHWM:")) << 10;
+  return use;
 }
 
 void HostProcess::pass_on_output() {

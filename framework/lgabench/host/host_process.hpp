@@ -30,6 +30,12 @@ struct HostCommand {
 /// Descriptor on which a worker that is debugged reads what the person types; its standard input is the job.
 constexpr int persons_input = 4;
 
+/// What a process used since it began.
+struct ProcessUse {
+  double cpu_s = 0;          // of all its threads
+  long long peak_bytes = 0;  // the most memory that it had in use (VmHWM)
+};
+
 /// A process in a session of its own with the socket as descriptor 3. What it and its children print goes to our
 /// stdout, cut off at 16 MiB. It, and whatever it left behind, is gone when this is; in the foreground that is waited
 /// for.
@@ -51,6 +57,8 @@ class HostProcess {
   const std::vector<std::string>& refused_calls() const { return calls_.refused(); }
   /// Processes that it started, directly or not, and that are still there: "NUMBER NAME" each.
   std::vector<std::string> started() const;
+  /// What the process itself used, not those that it started; 0 where it is gone.
+  ProcessUse used() const;
   /// Call it when the connection has ended. `last_words`: what the process said of its end, or "". @throws MethodGone
   /// that says how the process ended, always.
   [[noreturn]] void explain(const std::string& last_words);

@@ -69,6 +69,7 @@ class HostSession {
   ProcessState state();
   /// Processes that the plugin started and that are still there, "NUMBER NAME" each.
   std::vector<std::string> processes() const { return process_.started(); }
+  ProcessUse used() const { return process_.used(); }
 
  private:
   template <class Call>

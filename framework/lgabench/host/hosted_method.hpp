@@ -57,6 +57,8 @@ class HostedMethod : public MethodInProcesses {
   bool is_broken() const { return session_->is_broken(); }
   /// For check-plugin: processes that the plugin started and that are still there, "NUMBER NAME" each.
   std::vector<std::string> processes() const;
+  /// What its process used so far.
+  ProcessUse used() const { return session_->used(); }
 
  private:
   PlainDirectory files_;

@@ -38,16 +38,6 @@ struct CheckPluginArguments {
   bool json = false;
 };
 
-Json options_of(const PluginInfo& plugin, const std::vector<std::string>& settings) {
-  Json given = Json::object();
-  for (const std::string& setting : settings) {
-    const std::size_t equals = setting.find('=');
-    if (equals == setting.npos) throw InputError(fmt::format("--set {}: expected option=value", setting));
-    given[setting.substr(0, equals)] = option_value(setting.substr(equals + 1));
-  }
-  return resolve_options(plugin, given);
-}
-
 // What is told while the first process works: each finding once, and where it stays for long.
 class Watching {
  public:
@@ -143,7 +133,7 @@ std::array<CheckProcess, 2> two_processes(const PluginInfo& plugin, const std::o
   if (plugin.kind == "method") job.method = plugin;
   if (plugin.kind == "perturbation" || plugin.kind == "perceiver") job.perturbation = plugin;
   if (plugin.kind == "environment") job.checked_environment = plugin;
-  job.options = options_of(plugin, a.settings);
+  job.options = options_set(plugin, a.settings);
   job.limits = worker_limits(pool);
   job.environment = a.environment;
   std::array<CheckProcess, 2> both;

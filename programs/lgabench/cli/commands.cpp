@@ -87,7 +87,7 @@ void arrange_commands(CLI::App& app) {
       {"To run on many machines", {"cluster", "status", "merge"}},
       {"To publish", {"leaderboard"}},
       {"To add a method, an engine or a scenario",
-       {"new-plugin", "check-plugin", "new-scenario", "new-suite", "check-scenario", "draw-commands"}},
+       {"new-plugin", "check-plugin", "bench", "new-scenario", "new-suite", "check-scenario", "draw-commands"}},
       {"To run a user study", {"study"}},
       {"To look after an installation", {"encoder", "cache"}}};
   for (const auto& [title, names] : titles)

@@ -17,12 +17,13 @@ inline constexpr std::array first_commands{"list", "run", "open", "compare", "ne
 extern const char* const reference;
 
 /// The verbs of lgabench-worker that a person calls, which need an engine, with what they do.
-inline constexpr std::array<std::pair<const char*, const char*>, 6> worker_verbs{{
+inline constexpr std::array<std::pair<const char*, const char*>, 7> worker_verbs{{
     {"select", "Ask which features matter for a command, and print the Selection"},
     {"demos", "Write the oracle's demonstrations of a scenario as robomimic HDF5"},
     {"render", "Draw a scene, its ids and its goal mask, or a contact sheet, as a PNG file"},
     {"replay", "Play a recorded episode again, as an animation or a film strip"},
     {"rescore", "Judge a run's recorded actions by other tolerances, without their methods"},
+    {"bench", "Measure how long a method takes, beside another one"},
     {"check-scenario", "Sample and play a scenario's scenes, and say what is wrong with the scenario"},
 }};
 /// What a verb of worker_verbs does.

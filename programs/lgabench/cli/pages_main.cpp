@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   cli::add_replay(app, exit);
   cli::add_rescore(app, exit);
   cli::add_check_scenario(app, exit);
+  cli::add_bench(app, exit);
   cli::arrange_commands(app);
   const std::string what = argc == 2 ? argv[1] : "";
   if (what != "man" && what != "bash" && what != "zsh" && what != "fish") return cli::usage;

@@ -6,6 +6,7 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/read_space.hpp>
 #include <lgabench/core/suggest.hpp>
+#include <lgabench/plugin/loader.hpp>
 
 namespace lgabench::cli {
 
@@ -19,6 +20,16 @@ std::string layout_of(const Scenario& scenario, const std::string& word) {
   if (word.empty()) return there.front();
   if (!contains(there, word)) throw InputError("--layout: " + none_named("layout", word, there));
   return word;
+}
+
+Json options_set(const PluginInfo& plugin, const std::vector<std::string>& words) {
+  Json given = Json::object();
+  for (const std::string& word : words) {
+    const std::size_t equals = word.find('=');
+    if (equals == word.npos) throw InputError(fmt::format("--set {}: expected option=value", word));
+    given[word.substr(0, equals)] = option_value(word.substr(equals + 1));
+  }
+  return resolve_options(plugin, given);
 }
 
 void also_for_workers(const std::string& path) {

@@ -24,6 +24,7 @@
 
 namespace lgabench {
 struct Scenario;
+struct PluginInfo;
 }
 
 namespace lgabench::cli {
@@ -62,6 +63,7 @@ void add_strips(CLI::App& app, int& exit);
 void add_replay(CLI::App& app, int& exit);
 void add_rescore(CLI::App& app, int& exit);
 void add_check_scenario(CLI::App& app, int& exit);
+void add_bench(CLI::App& app, int& exit);
 
 /// A check for an option: a number from `low` to `high`, which NaN is not.
 inline CLI::Validator within(double low, double high) {
@@ -108,6 +110,9 @@ inline CLI::Validator one_of(std::string what, std::vector<std::string> known) {
 
 /// A check for an option: an installed feature space.
 CLI::Validator feature_space();
+
+/// Every option of the plugin, some as words OPTION=VALUE set them. @throws InputError
+Json options_set(const PluginInfo& plugin, const std::vector<std::string>& words);
 
 /// What --plugin-path of a verb takes that finds its plugins with plugins_at() (host/python_method.hpp).
 inline constexpr const char* any_plugin = "a directory, a site-packages folder, a .so file, or FILE.py:CLASS";

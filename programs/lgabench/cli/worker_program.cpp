@@ -18,7 +18,7 @@ namespace lgabench::cli {
 int worker_with_programs(int argc, char** argv) {
   if (argc > 1 && worker::find_verb(argv[1])) return worker::worker_program(argc, argv);
   know_python_environments();
-  constexpr std::array plays{"check-scenario", "demos", "render", "replay"};
+  constexpr std::array plays{"bench", "check-scenario", "demos", "render", "replay"};
   if (argc > 1 && contains(plays, std::string(argv[1]))) let_environments_start();
   open_standard_streams();
   flush_denormals();
@@ -34,6 +34,7 @@ int worker_with_programs(int argc, char** argv) {
   add_pictures(app, exit);
   add_strips(app, exit);
   add_check_scenario(app, exit);
+  add_bench(app, exit);
   add_replay(app, exit);
   add_rescore(app, exit);
   return dispatch(app, {argv + std::min(argc, 1), argv + argc}, exit);
