@@ -17,7 +17,7 @@ namespace lgabench {
 namespace {
 
 constexpr std::uint64_t scene_seed = 7;
-constexpr int scenes_an_arm = 5, calls = 50;
+constexpr int tests_an_arm = 5, calls = 50;
 
 using Clock = std::chrono::steady_clock;
 
@@ -40,7 +40,7 @@ MethodBench::MethodBench(Scenario scenario, const std::optional<PluginInfo>& eng
     : scenario_(std::move(scenario)), demonstrations_(demonstrations) {
   environment_ = make_environment(scenario_, load_engine(engine));
   for (const Arm& arm : scenario_.tests)
-    for (int i = 0; i < scenes_an_arm; ++i) {
+    for (int i = 0; i < tests_an_arm; ++i) {
       const Scene scene = test_scene(scenario_, layouts_of(scenario_).front(), arm.id, scene_seed, i);
       tests_.emplace_back(scene, environment_->reset(scene));
     }
