@@ -143,11 +143,6 @@ Json benchmark_json(const std::array<Measured, 2>& both, const BenchArguments& a
   return all;
 }
 
-// The example of the environment's first task, unless another scenario is named.
-Scenario scenario_of(const std::string& word) {
-  return load_scenario(word.empty() ? find_environment(environment_ids().front()).tasks().front().example : word);
-}
-
 void bench(const BenchArguments& a) {
   if (const std::string missing = a.method.find('/') != a.method.npos ? missing_plugin(a.method) : ""; !missing.empty())
     throw InputError(missing);
@@ -161,7 +156,8 @@ void bench(const BenchArguments& a) {
     const bool same = both[0].plugin.id == both[1].plugin.id;
     both[i].name = both[i].plugin.id + (same ? i == 0 ? " (1)" : " (2)" : "");
   }
-  const Scenario scenario = scenario_of(a.scenario);
+  const std::string usual = find_environment(environment_ids().front()).tasks().front().example;
+  const Scenario scenario = load_scenario(a.scenario.empty() ? usual : a.scenario);
   const EnvironmentType& type = *scenario.environment;
   const std::string engine = a.engine.empty() ? default_engine(catalogue, type) : a.engine;
   MethodBench used(scenario, catalogue.engine(engine, type), a.demonstrations);
