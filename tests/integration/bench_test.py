@@ -78,7 +78,7 @@ class Bench(Case):
 
     def test_a_table_has_ratios(self):
         said = self.bench("human", "--beside", "human", "--set", "policy=point", "--demos", "1", "--repetitions", "2").stdout
-        self.assertRegex(said, r"(?m)^heart, 1 demonstrations of each command; medians of 2 uses each, in turns$")
+        self.assertRegex(said, r"(?m)^heart, 1 demonstration of each command; medians of 2 uses each, in turns$")
         self.assertRegex(said, r"(?m)^ +human \(1\) +human \(2\)")
         learn = next(line for line in said.splitlines() if line.startswith("learn"))
         self.assertLess(float(learn.split("ms")[2].split(",")[0]), 1, "who points does not train")

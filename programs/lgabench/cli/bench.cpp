@@ -26,7 +26,7 @@ namespace lgabench::cli {
 namespace {
 
 struct BenchArguments {
-  std::string method, beside = "lga", scenario, engine, python = usual_python();
+  std::string method, beside = "lga", scenario = "heart", engine, python = usual_python();
   std::vector<std::string> settings;
   std::vector<fs::path> plugin_path;
   int demonstrations = 10, repetitions = 9;
@@ -80,8 +80,8 @@ void print_bytes(const std::string& what, double mine, double other) {
 }
 
 void print(const std::array<Measured, 2>& both, const BenchArguments& a, const Scenario& scenario) {
-  to_stdout("{}, {} demonstrations of each command; medians of {} uses each, in turns\n\n", scenario.id,
-            a.demonstrations, a.repetitions);
+  to_stdout("{}, {} demonstration{} of each command; medians of {} uses each, in turns\n\n", scenario.id,
+            a.demonstrations, a.demonstrations == 1 ? "" : "s", a.repetitions);
   print_row("", both[0].name, both[1].name, "ratio, and of single pairs");
   for (const char* phase : phases) {
     const auto mine = seconds_of(both[0], phase, &MethodTimes::Phase::wall_s),
@@ -156,8 +156,7 @@ void bench(const BenchArguments& a) {
     const bool same = both[0].plugin.id == both[1].plugin.id;
     both[i].name = both[i].plugin.id + (same ? i == 0 ? " (1)" : " (2)" : "");
   }
-  const std::string usual = find_environment(environment_ids().front()).tasks().front().example;
-  const Scenario scenario = load_scenario(a.scenario.empty() ? usual : a.scenario);
+  const Scenario scenario = load_scenario(a.scenario);
   const EnvironmentType& type = *scenario.environment;
   const std::string engine = a.engine.empty() ? default_engine(catalogue, type) : a.engine;
   MethodBench used(scenario, catalogue.engine(engine, type), a.demonstrations);
@@ -187,7 +186,7 @@ void add_bench(CLI::App& app, int&) {
   verb.option("--beside METHOD", a->beside, "What it is compared with, likewise", with_default);
   verb.option("--set OPTION=VALUE", a->settings, "An option of METHOD, not of the other one; can be repeated",
               repeatable);
-  verb.option("--scenario SCENARIO", a->scenario, "A scenario (default: the example of the first task)");
+  verb.option("--scenario SCENARIO", a->scenario, "A scenario, by id", with_default);
   verb.option("--demos N", a->demonstrations, "Demonstrations of each command", CLI::Range(1, 1000), with_default);
   verb.option("--repetitions N", a->repetitions, "Uses of each method", CLI::Range(1, 1000), with_default);
   verb.option("--engine ENGINE", a->engine, "An engine, by plugin id (default: the one that suites use)");
