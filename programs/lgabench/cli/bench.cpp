@@ -12,6 +12,7 @@
 
 #include <lgabench/cell/method_times.hpp>
 #include <lgabench/cli/commands.hpp>
+#include <lgabench/core/descriptor.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/scratch.hpp>
@@ -160,6 +161,8 @@ void bench(const BenchArguments& a) {
   const EnvironmentType& type = *scenario.environment;
   const std::string engine = a.engine.empty() ? default_engine(catalogue, type) : a.engine;
   MethodBench used(scenario, catalogue.engine(engine, type), a.demonstrations);
+  const Descriptor out{::dup(1)};
+  ::dup2(2, 1);  // what the methods print
   CountedProgress progress("uses measured:", 2 * a.repetitions);
   for (int k = 0; k < a.repetitions; ++k)
     for (std::size_t turn = 0; turn < both.size(); ++turn) {
@@ -170,6 +173,8 @@ void bench(const BenchArguments& a) {
       progress.tell_next();
     }
   progress.end();
+  flush_stdout();
+  ::dup2(out.fd, 1);
   if (a.json)
     to_stdout("{}\n", benchmark_json(both, a, scenario).dump(1));
   else
