@@ -200,8 +200,8 @@ void add_bench(CLI::App& app, int&) {
   add_python(verb, a->python);
   add_scenario_path(verb);
   verb->footer(
-      "Each use has a fresh, confined process, as a cell has. start: until it has loaded its libraries; select: all\n"
-      "commands; act: the mean call; save: of the policy. Only the ratios of one idle machine mean something.\n"
+      "Each use has a fresh, confined process, as a cell has. start: until its libraries are loaded; select: all "
+      "commands; act: the mean call. Only ratios mean something, on an idle machine.\n"
       "Example: lgabench bench build/my_method.so --demos 20");
   verb->callback([a] { bench(*a); });
 }
