@@ -238,6 +238,15 @@ std::vector<SceneObject> placed_things(const Scenario& scenario, const SceneRequ
   return objects;
 }
 
+// What is not there yet has the last id: a gap would tell that something comes.
+void let_later_be_last(std::vector<SceneObject>& objects) {
+  const auto later = std::find_if(objects.begin(), objects.end(),
+                                  [](const SceneObject& object) { return object.role == role::later; });
+  if (later == objects.end()) return;
+  std::swap(later->instance_id, objects.back().instance_id);
+  std::iter_swap(later, objects.end() - 1);
+}
+
 }  // namespace
 
 Scene errand_scene(const Scenario& scenario, const SceneRequest& request, int index) {
@@ -276,6 +285,7 @@ Scene errand_scene(const Scenario& scenario, const SceneRequest& request, int in
     throw NothingToShow(fmt::format("scenario \"{}\", arm {}: expected a scene that shows how \"{}\" is meant",
                                     scenario.id, request.arm, scenario.commands[command].utterance));
   permute_ids(scene.objects, stream("ids"));
+  let_later_be_last(scene.objects);
   for (const std::size_t i : Errand(scene).wanted()) scene.objects[i].role = role::target;
   return scene;
 }

@@ -159,6 +159,9 @@ TEST_P(ErrandsTold, ScenesOfAPairDifferInCommandAndJudgeAlone) {
       EXPECT_EQ(seen.rgb, seen_by_other.rgb);
       EXPECT_EQ(seen.ids, seen_by_other.ids);
       ASSERT_EQ(seen.instances.size(), 8u) << "seven objects and the pallet; what comes later is not there yet";
+      std::set<int> ids;
+      for (const Instance& instance : seen.instances) ids.insert(instance.id);
+      EXPECT_EQ(*ids.rbegin(), 8) << "no gap tells that something comes";
       for (int step = 0; perception && step < 3; ++step) {
         const Observation read = perception(seen, one, step), read_by_other = perception(seen, other, step);
         for (std::size_t i = 0; i < read.instances.size(); ++i) {
