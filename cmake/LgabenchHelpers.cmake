@@ -44,7 +44,7 @@ endfunction()
 set(lgabench_public_headers
     core/action.hpp core/environment.hpp core/environments.hpp core/error.hpp core/feature_space.hpp core/files.hpp core/geometry.hpp core/json.hpp
     core/language_model.hpp core/meaning.hpp core/method.hpp core/observation.hpp core/observation_perturbation.hpp core/perceiver.hpp core/physics_world.hpp core/random.hpp core/sampling.hpp core/scenario.hpp core/scene.hpp core/selection.hpp
-    core/shown.hpp core/version.hpp core/view.hpp
+    core/shown.hpp core/turns.hpp core/version.hpp core/view.hpp
     plugin/descriptor.hpp plugin/environment.hpp plugin/fingerprint.hpp plugin/plugin.hpp plugin/simple_environment.hpp
     abstraction/goal_mask.hpp abstraction/repaint.hpp abstraction/select_features.hpp
     learning/archive.hpp learning/cloning_method.hpp learning/featurizer.hpp learning/inputs.hpp learning/learner.hpp learning/noisy_copies.hpp

@@ -154,7 +154,8 @@ def action_bytes(value, count, may_stop=False):
     """b"" where nothing is left to do."""
     numbers = numpy.asarray(value, dtype="<f8")
     if numbers.shape != (count,) and not (may_stop and numbers.shape == (0,)):
-        raise ValueError(f"act() returned an array of shape {numbers.shape}, expected {count} numbers")
+        nothing = "; none say that nothing is left to do, where layout[\"may_stop\"] is true" if numbers.shape == (0,) else ""
+        raise ValueError(f"act() returned an array of shape {numbers.shape}, expected {count} numbers{nothing}")
     return numbers.tobytes()
 
 

@@ -62,6 +62,51 @@ class Unasked(Silent):
 """
 
 
+# Says at once that nothing is left to do; in one of two episodes; does not know that labels may be none.
+STOPS = """
+import numpy
+
+from lgabench_method import Needs, Selection
+
+
+class Stops:
+    def needs(self, options):
+        return Needs(targets="truth")
+
+    def select(self, command, space, services):
+        return Selection()
+
+    def learn(self, demonstrations, services):
+        assert services.layout["may_stop"] and any(len(one.steps[0].label) == 0 for one in demonstrations)
+        return Acts([step.label for one in demonstrations for step in one.steps if len(step.label)][0])
+
+
+class Counts(Stops):
+    def learn(self, demonstrations, services):
+        policy = super().learn(demonstrations, services)
+        policy.counts = True
+        return policy
+
+
+class Blind(Stops):
+    def learn(self, demonstrations, services):
+        numpy.stack([step.label for one in demonstrations for step in one.steps])
+
+
+class Acts:
+    counts, episodes = False, 0
+
+    def __init__(self, action):
+        self.action = action
+
+    def reset(self):
+        self.episodes += 1
+
+    def act(self, observation, instruction):
+        return self.action if self.counts and self.episodes % 2 else []
+"""
+
+
 class CheckPlugin(Case):
     def check(self, file, *settings, expect=1):
         words = [word for setting in settings for word in ("--set", setting)]
@@ -201,6 +246,16 @@ class CheckPlugin(Case):
         self.environment["LGABENCH_PLUGIN_PATH"] = str(FIXTURES / "good")
         detail = self.check(FIXTURES / "refused/duplicate.so")["id"]["detail"]
         self.assertEqual(detail, f"fixture_constant is also the id of {FIXTURES}/good/fixture_constant.so")
+
+    def test_on_a_scenario_of_several_steps(self):
+        (self.dir / "acts.py").write_text(STOPS)
+        for name, problem in ("Stops", None), ("Counts", "same scenes"), ("Blind", "learn"):
+            said = json.loads(self.call("check-plugin", f"acts.py:{name}", "--python", PYTHON, "--scenario", "refusing_heart", "--json",
+                                        expect=1 if problem else 0).stdout)
+            problems = {f["check"]: f["detail"] for f in said["findings"] if f["state"] == "problem"}
+            self.assertEqual(list(problems)[:1], [problem] if problem else [], problems)
+        self.assertIn("expected a method's file", self.call("check-plugin", BUILD / "lib/lgabench/plugins/mujoco.so", "--scenario", "heart", expect=2).stderr)
+        self.assertIn('no scenario "none"', self.call("check-plugin", "acts.py:Stops", "--python", PYTHON, "--scenario", "none", expect=2).stderr)
 
     def test_in_the_environment_that_is_named(self):
         constant = FIXTURES / "good/fixture_constant.so"

@@ -16,10 +16,12 @@ using CheckPhase = std::function<void(const std::string& phase, const CheckRepor
 /// Uses the method twice from loading to acting, on small but real cells of the job's environment: its first task's
 /// example, and a scenario with commands that are only tested, where it has one; examples with a second set are
 /// selected for only, and one for which nothing can be shown is not learned from, as in a run. "" is the first
-/// environment that has such commands. The seed is not the job's. Returns all findings; one thread.
+/// environment that has such commands. With a `scenario`, else null, it plays that one alone. The seed is not the
+/// job's. Returns all findings; one thread.
 /// @throws PluginError if it cannot be loaded, MethodGone where its process ends; whatever else it throws is a finding.
 /// EngineError for the engine's fault.
-CheckReport check_method(HostJob job, const std::optional<PluginInfo>& engine, const CheckPhase& phase);
+CheckReport check_method(HostJob job, const std::optional<PluginInfo>& engine, const Json& scenario,
+                         const CheckPhase& phase);
 
 /// Lets the oracle play scenes of every task of the environment ("": of all) on the engine, forwards and backwards,
 /// likewise.

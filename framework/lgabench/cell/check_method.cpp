@@ -472,23 +472,33 @@ std::optional<Scenario> with_unseen_commands(const std::string& environment) {
   return std::nullopt;
 }
 
+// The example of the environment's first task, and a scenario with unseen commands. What a method is told of a task of
+// several steps holds for that one alone.
+std::vector<Scenario> played_in(std::string environment) {
+  std::optional<Scenario> unseen = with_unseen_commands(environment);
+  if (environment.empty()) environment = unseen ? unseen->environment->id() : environment_ids().front();
+  const TaskInfo& task = find_environment(environment).tasks().front();
+  std::vector<Scenario> all{load_scenario(task.example)};
+  if (unseen && (task.most_steps == 1 || unseen->task == task.id)) all.push_back(*std::move(unseen));
+  return all;
+}
+
 }  // namespace
 
-CheckReport check_method(HostJob job, const std::optional<PluginInfo>& engine, const CheckPhase& phase) {
+CheckReport check_method(HostJob job, const std::optional<PluginInfo>& engine, const Json& scenario,
+                         const CheckPhase& phase) {
   job.seed = seed;
   job.hidden = runs_below(job.plugin.file.parent_path());
-  std::optional<Scenario> unseen = with_unseen_commands(job.environment);
-  if (job.environment.empty()) job.environment = unseen ? unseen->environment->id() : environment_ids().front();
   std::vector<std::unique_ptr<Bench>> benches;
-  const TaskInfo& task = find_environment(job.environment).tasks().front();
-  const Scenario example = load_scenario(task.example);
-  if (task.most_steps > 1) {  // the method is told of this task's state, so that no other one is played
-    job.task = task.id;
-    job.may_stop = example.may_stop;
-    if (unseen && unseen->task != task.id) unseen.reset();
+  std::vector<Scenario> all =
+      scenario.is_null() ? played_in(job.environment) : std::vector{read_scenario(scenario, "check: /scenario")};
+  for (Scenario& played : all) benches.push_back(std::make_unique<Bench>(std::move(played), engine));
+  const Scenario& first = benches.front()->scenario;
+  job.environment = first.environment->id();
+  if (find_task(*first.environment, first.task).most_steps > 1 || first.may_stop) {  // it is told of this task's state
+    job.task = first.task;
+    job.may_stop = first.may_stop;
   }
-  benches.push_back(std::make_unique<Bench>(example, engine));
-  if (unseen) benches.push_back(std::make_unique<Bench>(*std::move(unseen), engine));
   phase("load", {});
   std::optional<Kept> kept;
   CheckReport report;

@@ -199,7 +199,11 @@ FeatureSet& Meaning::product() { return const_cast<FeatureSet&>(std::as_const(*t
 
 const FeatureSet& Meaning::product() const {
   if (!is_product())
-    throw MethodError("a meaning that is more than one product of types and textures, where one product was expected");
+    throw MethodError(turns.empty()
+                          ? "a meaning that is more than one product of types and textures, where one product "
+                            "was expected"
+                          : "a meaning with turns, where one product of types and textures was expected: turns "
+                            "are for commands that may stop (Command::may_stop)");
   return sets.front();
 }
 

@@ -101,6 +101,7 @@ static void fields(CheckJob& job, Fields& field) {
   field("report", job.report);
   field("limits", job.limits);
   field("environment", job.environment);
+  field("scenario", job.scenario, when(!job.scenario.is_null()));
   field("method", job.method, when(job.method.has_value()));
   field("perturbation", job.perturbation, when(job.perturbation.has_value()));
   field("checked_environment", job.checked_environment, when(job.checked_environment.has_value()));

@@ -69,6 +69,7 @@ struct CheckJob {
   std::filesystem::path report;      // gets a CheckReport
   Limits limits{};
   std::string environment{};                        // to play in; "": check_method() and the like say which
+  Json scenario{};                                  // that a method plays alone; null: likewise
   std::optional<PluginInfo> perturbation{};         // that is checked instead; or a perceiver
   std::optional<PluginInfo> checked_environment{};  // that is checked instead
 };

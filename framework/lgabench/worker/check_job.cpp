@@ -24,7 +24,7 @@ void check(const JsonReader& reader, const Messages& messages) {
     HostJob method{*job.method, job.environment, job.options, 0, job.scratch};
     method.perturb = job.perturb;
     method.memory_bytes = job.limits.data_bytes;
-    return check_method(method, job.engine, phase);
+    return check_method(method, job.engine, job.scenario, phase);
   };
   const auto on_perturbation = [&] {
     HostJob perturbation{*job.perturbation, job.environment, Json::object(), 0, job.scratch};

@@ -18,6 +18,7 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/resources.hpp>
+#include <lgabench/core/scenario.hpp>
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
@@ -32,7 +33,7 @@ namespace lgabench::cli {
 namespace {
 
 struct CheckPluginArguments {
-  std::string file, python = usual_python(), environment;
+  std::string file, python = usual_python(), environment, scenario;
   std::vector<std::string> settings;
   double timeout_s = 600, memory_gib = 0;
   bool json = false;
@@ -136,6 +137,7 @@ std::array<CheckProcess, 2> two_processes(const PluginInfo& plugin, const std::o
   job.options = options_set(plugin, a.settings);
   job.limits = worker_limits(pool);
   job.environment = a.environment;
+  if (!a.scenario.empty()) job.scenario = load_scenario(a.scenario).json;
   std::array<CheckProcess, 2> both;
   for (std::size_t i = 0; i < both.size(); ++i) {
     both[i] = {scratch / (i == 0 ? "first.json" : "second.json"), scratch / fmt::format("log{}.txt", i), job, {}};
@@ -210,9 +212,10 @@ std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
   return watching.printed();
 }
 
-int check_plugin(const CheckPluginArguments& a) {
+int check_plugin(CheckPluginArguments a) {
   if (const std::string missing = missing_plugin(a.file); !missing.empty()) throw InputError(missing);
   if (!a.environment.empty()) find_environment(a.environment);
+  if (!a.scenario.empty()) a.environment = load_scenario(a.scenario).environment->id();
   CheckReport report;
   PluginInfo plugin;
   std::size_t printed = 0;
@@ -225,6 +228,8 @@ int check_plugin(const CheckPluginArguments& a) {
     }
     if (!a.json)
       to_stdout("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind.front() == 'e' ? "an" : "a", plugin.kind);
+    if (!a.scenario.empty() && plugin.kind != "method")
+      throw InputError("--scenario: expected a method's file beside it");
     printed = check(plugin, scan_plugins(plugin_directories()), a, report);
   } catch (const PluginError& e) {
     const bool in_options = std::string_view(e.what()).find(": options: ") != std::string_view::npos;
@@ -259,6 +264,10 @@ void add_check_plugin(CLI::App& app, int& exit) {
   verb.option("--python PROGRAM", a->python, "The interpreter for a plugin in Python", with_default);
   verb.option("--set OPTION=VALUE", a->settings, "An option of the plugin; can be repeated", repeatable);
   verb.option("--environment ID", a->environment, "The environment to check the plugin in");
+  verb.option("--scenario SCENARIO", a->scenario,
+              "A scenario, by id, that a method is checked on alone: one of several steps, such as errands_fruit")
+      ->excludes("--environment");
+  add_scenario_path(verb);
   verb.option("--timeout SECONDS", a->timeout_s, "Time limit of each of the two processes, in seconds", within(1, 1e6),
               with_default);
   verb.option("--memory GIB", a->memory_gib,

@@ -32,7 +32,8 @@ std::string to_csv(const Summary& summary) {
     for (const char* member : {"share", "low", "high", "scenes"})
       add(fmt::format("paired_{}", member), fmt::format("paired/{}", member));
   if (any([](const Row& row) { return row.course.has_value(); })) {
-    for (const char* member : {"progress", "too_early", "went_on"}) add(member, fmt::format("course/{}", member));
+    for (const char* member : {"progress", "too_early", "went_on"})
+      add(member == std::string("progress") ? member : fmt::format("n_{}", member), fmt::format("course/{}", member));
     for (const char* member : {"first_take", "refusals", "takings"})
       add(member, fmt::format("course/{}/share", member));
   }
