@@ -249,7 +249,7 @@ class CheckPlugin(Case):
 
     def test_on_a_scenario_of_several_steps(self):
         (self.dir / "acts.py").write_text(STOPS)
-        for name, problem in ("Stops", None), ("Counts", "same scenes"), ("Blind", "learn"):
+        for name, problem in ("Stops", None), ("Counts", "order of scenes"), ("Blind", "learn"):
             said = json.loads(self.call("check-plugin", f"acts.py:{name}", "--python", PYTHON, "--scenario", "refusing_heart", "--json",
                                         expect=1 if problem else 0).stdout)
             problems = {f["check"]: f["detail"] for f in said["findings"] if f["state"] == "problem"}

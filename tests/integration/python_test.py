@@ -623,6 +623,14 @@ class PythonExamples(Case):
         acted = [json.loads(line)["action"] for file in self.dir.glob("out/cells/*/episodes.jsonl") for line in file.read_text().splitlines()]
         self.assertEqual(acted, 2 * [[.75, .5, 1, 1, 1, 1] * 2])
 
+    def test_a_plan_that_is_kept(self):
+        self.call("run", "errands", "--preset", "smoke", "--scenarios", "errands_fruit", "--episodes", "16", "--methods",
+                  EXAMPLES / "plan.py:Plan", "--no-reference", "--python", PYTHON, "--out", "out")
+        shares = {row["arm"]: row["paired"]["share"] for row in json.loads((self.dir / "out/summary.json").read_text())["rows"]
+                  if row["scenario"] == "errands_fruit"}
+        self.assertEqual(shares["told"], 1)
+        self.assertLess(shares["appears"], 1, "it does not look again")
+
     def test_joblib_falls_back_on_one_process(self):
         self.need("joblib")
         (self.dir / "mine.py").write_text(LATE.replace("import numpy\n", "import joblib, numpy\n", 1).replace(
