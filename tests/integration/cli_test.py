@@ -159,6 +159,7 @@ class Mistakes(Case):
             (["report", "x", "--format", "yaml"], r'--format: no format "yaml", expected one of: text, md, latex, json, csv'),
             (["select", "Bring me the unicorn."], r"none for .*; --answers openai asks a model \(docs/language-models.md\)$"),
             (["leaderboard", "build", "--cells", "3"], r"^lgabench: leaderboard build: --cells is an option of verify$"),
+            (["leaderboard", "add", "x", "--entry", "y"], r"results/leaderboard: no leaderboard is there; give --board DIR"),
             (["leaderboard", "add", "x", "--documents", "y"], r"leaderboard add: --documents is an option of build, check$"),
             (["leaderboard", "check", "x"], r'leaderboard check: "x" is a word too many$'),
             (["leaderboard", "verify", "--fresh", "--cells", "3"], r"excludes"),
@@ -245,7 +246,7 @@ class DryRuns(Case):
         self.assertEqual([p for p in self.dir.iterdir()], [])
         self.assertRegex(said, r"^runs/q1-\w{8}: 1001 cells, 0 already computed, 1001 to compute\n")
         self.assertRegex(said, r"\nlga +195 +0 +\d+ min  cells measured elsewhere\n")
-        self.assertRegex(said, r"\nfixture_constant +195 +0 +at least \d+ (s|min)  nobody: what the method itself takes is unknown\n")
+        self.assertRegex(said, r"\nfixture_constant +195 +0 +at least \d+ (s|min)  nobody: what its own plugin takes is unknown\n")
         self.assertRegex(said, r"\nunknown, at least \d+ min with 1 worker\nthen at most as long again for cells of fixture_constant, to find the "
                                r"causes of failures\ndisk: \d+ MB in runs/q1-\w{8}, and at most \d+ MB")
         said = self.call("run", "q1", "--dry-run", "--methods", "lga,gcbc_dart").stdout

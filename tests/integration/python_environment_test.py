@@ -73,10 +73,17 @@ class PythonEnvironments(PythonCase):
         self.run_suite()
         self.change("import numpy\n", "import numpy\nraise SystemExit('it was started')\n")
         self.assertIn("my_world", self.call("list", "environments", "--short", *self.path).stdout)
-        self.run_suite("--dry-run", "--fresh")
+        planned = self.run_suite("--dry-run", "--fresh").stdout
+        self.assertRegex(planned, r"(?m)^human .* nobody: what its own plugin takes is unknown$")
+        self.assertRegex(planned, r"(?m)^oracle .* nobody: what its own plugin takes is unknown$")
         self.call("report", "run")
         said = self.run_suite("--fresh", expect=3).stderr
         self.assertIn("failed", said)
+
+    def test_what_samples_scenes_itself_refuses_it(self):
+        self.environment.update(LGABENCH_PLUGIN_PATH=f"{self.dir}/{WORD}", LGABENCH_PYTHON=PYTHON)
+        said = self.call("select", "--suite", "mine/my_world_suite.json", "--score", "--answers", "none", expect=2).stderr
+        self.assertIn("my_world", said)
 
     def test_a_changed_file_computes_its_cells_again(self):
         self.run_suite("--no-reference")

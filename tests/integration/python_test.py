@@ -174,7 +174,7 @@ class PythonMethods(Case):
     def test_an_interpreter_without_numpy_or_that_is_gone_is_told_from_others(self):
         subprocess.run([PYTHON, "-m", "venv", "--without-pip", self.dir / "bare"], check=True)
         said = self.call(*with_options(RUN, "--python", "bare/bin/python"), "--methods", "mine.py:Mine", expect=4).stderr
-        self.assertIn("bare/bin/python: has no NumPy, which methods in Python need: bare/bin/python -m pip install numpy, or name", said)
+        self.assertIn("bare/bin/python: has no NumPy, which plugins in Python need: bare/bin/python -m pip install numpy, or name", said)
         (self.dir / "moved").symlink_to("/nowhere/python3")
         said = self.call(*with_options(RUN, "--python", "./moved"), "--methods", "mine.py:Mine", expect=4).stderr
         self.assertIn("./moved: a link to /nowhere/python3, which does not exist: make the virtual environment again", said)

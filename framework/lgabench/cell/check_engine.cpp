@@ -135,9 +135,9 @@ void judge_description(const EnvironmentType& environment, CheckReport& report) 
                            environment.action_space().size(), size.rows, size.columns),
                "name a task with an example scenario");
   if (environment.action_space().places.empty())
-    report.note("heat maps",
-                "actions have no place in the picture: policy=heat_map and the rules that take a place do not run",
-                "name ActionSpace::places where two numbers of an action are a place that the picture shows");
+    report.note(
+        "heat maps", "actions have no place in the picture: policy=heat_map and the rules that take a place do not run",
+        "give `places` (ActionSpace::places) where two numbers of an action are a place that the picture shows");
   else if (size.rows % map_rows != 0 || size.columns % map_columns != 0 || size.columns != 2 * size.rows)
     report.note("heat maps",
                 fmt::format("{} x {} pixels: policy=heat_map has {} x {} cells, and distorts or refuses the picture",

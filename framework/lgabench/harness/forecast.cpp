@@ -67,13 +67,13 @@ Forecast forecast(const std::vector<const Cell*>& complete, const std::vector<co
     const std::string other = measured_on(cell);
     auto known_row = unknown_rows.find(row.name);
     if (known_row == unknown_rows.end())
-      known_row = unknown_rows.emplace(row.name, !costs.knows(row.name) && !other.empty() && is_unknown(cell)).first;
+      known_row = unknown_rows.emplace(row.name, !costs.knows(row.name) && is_unknown(cell)).first;
     const bool unknown = known_row->second;
     const double seconds =
         unknown ? costs.expected_seconds(row.name, least_seconds(cell)) : costs.expected_seconds(cell);
     row.unknown = row.unknown || unknown;
     all.unknown = all.unknown || unknown;
-    row.based_on = unknown                 ? "nobody: what the method itself takes is unknown"
+    row.based_on = unknown                 ? "nobody: what its own plugin takes is unknown"
                    : costs.knows(row.name) ? "this run's cells"
                    : other.empty()         ? "cells measured elsewhere"
                                            : other + "'s cells";

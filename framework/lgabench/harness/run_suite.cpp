@@ -311,8 +311,10 @@ bool has_own_arithmetic(const Cell& cell, const Catalogue& catalogue) {
 }
 
 bool takes_unknown_time(const Cell& cell, const Catalogue& catalogue) {
-  const PluginInfo* const method = method_plugin(cell, catalogue);
-  return is_strangers(cell, catalogue) || (method && !has_shipped_bytes(*method, catalogue));
+  const PluginInfo *const method = method_plugin(cell, catalogue), *const plays = environment_plugin(cell, catalogue);
+  if (plays && !has_shipped_bytes(*plays, catalogue)) return true;
+  return !measured_on(cell).empty() &&
+         (is_strangers(cell, catalogue) || (method && !has_shipped_bytes(*method, catalogue)));
 }
 
 std::string TimeSpent::text(int jobs) const {

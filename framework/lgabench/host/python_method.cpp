@@ -111,7 +111,7 @@ std::string answer_of(const std::string& interpreter, const std::string& word, c
   const auto [out, error, status] = output_of(interpreter, word, confinement);
   if (status != 0 && error.find("No module named 'numpy'") != error.npos)
     throw PluginError(fmt::format(
-        "{0}: has no NumPy, which methods in Python need: {0} -m pip install numpy, or name an interpreter that has it "
+        "{0}: has no NumPy, which plugins in Python need: {0} -m pip install numpy, or name an interpreter that has it "
         "with --python (/usr/bin/python3 with Debian's python3-numpy)",
         interpreter));
   const std::string last = last_line(error);

@@ -55,7 +55,7 @@ int add(const LeaderboardArguments& a) {
   return ok;
 }
 
-// What `add` makes and all else needs.
+// What `add` makes where somebody says so, and all else needs.
 void expect_board(const fs::path& board) {
   if (!fs::is_directory(board))
     throw InputError(fmt::format(
@@ -353,7 +353,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
     if (!a->line.empty() && a->action != "vouch")
       throw InputError(fmt::format("leaderboard {}: \"{}\" is a word too many", a->action, a->line));
     a->verify.program = app.version();
-    if (a->action != "add") expect_board(a->board);
+    if (a->action != "add" || verb->count("--board") == 0) expect_board(a->board);
     exit = a->action == "verify"      ? verify(*a)
            : a->action == "add"       ? add(*a)
            : a->action == "vouch"     ? vouch(*a)

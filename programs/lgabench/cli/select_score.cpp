@@ -307,6 +307,8 @@ void print_groups(const Suite& suite, const std::vector<std::string>& arms, cons
 void print_scores(const Suite& suite, Truth truth, int scenes, bool json, bool expects_answers,
                   const WithAnswers& with_answers) {
   const SuiteScores asked = ask_all(suite, truth, scenes, with_answers);
+  if (asked.by_asking.count("named") == 0)  // which asks nobody: no scene can be had
+    throw InputError(fmt::format("{}", fmt::join(asked.left_out, "; ")));
   const std::vector<std::string> sources = sources_in(asked),
                                  arms = named_arms(asked.by_asking.at("named").commands, suite);
   if (!json)
