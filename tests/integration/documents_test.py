@@ -1,5 +1,5 @@
-"""Every command that README and docs show, by how long it takes: up to 3 s it is carried out, up to 5 minutes with
-./test --full, a longer run is planned with --dry-run.
+"""Every command that README and docs show, by how long it takes: up to 3 s it is carried out with few episodes, up to 5 minutes
+and whole with ./test --full, a longer run is planned with --dry-run.
 
 LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 documents_test.py DocumentedCommands
 """
@@ -12,7 +12,7 @@ import shutil
 import textwrap
 import unittest
 
-from case import BUILD, Case, FIXTURES, with_options
+from case import BUILD, FULL, Case, FIXTURES, with_options
 from python_test import PYTHON, has
 
 SOURCE = pathlib.Path(__file__).parents[2]
@@ -23,7 +23,7 @@ OWN = {"my_method": "fixture_constant", "my_engine": "kinematic", "runs/NAME": "
        "SUITE": "mobile"}
 WITH_A_SERVER = ("openai", "cassette:")  # answers_test plays the server
 BUILT_BY_A_READER = ("mine.json", "own_network", "my_stack", "my_statistic", "my_axis", "my_asker", "my_world")
-LONGEST = 300 if os.environ.get("LGABENCH_FULL") else 3  # seconds, as --dry-run expects them
+LONGEST = 300 if FULL else 3  # seconds, as --dry-run expects them
 # run_test, verify_test, consumer_test, study_test, leaderboard_test, cluster_test, python/evals_test
 ELSEWHERE = {"install", "merge", "verify", "new-plugin", "check-plugin", "study", "leaderboard", "cluster", "status", "attribute", "answers"}
 
@@ -92,7 +92,9 @@ class DocumentedCommands(Case):
                         if "--dry-run" in words or asks_a_server or words in carried_out or expected_seconds(plan) > LONGEST:
                             continue
                         carried_out.append(words)
-                        self.call(*with_options(words, "--out", f"out{len(carried_out)}"), *own, timeout=1800)
+                        # The plan took the words whole; little is learned and played of them.
+                        few = () if FULL else ("--demos", "2", "--episodes", "2", *(() if "--set" in words else ("--set", "*.epochs=2")))
+                        self.call(*with_options(words, "--out", f"out{len(carried_out)}", *few), *own, timeout=1800)
                     elif words not in carried_out:
                         carried_out.append(list(words))
                         for pair in {"--difference", "--rows"}.intersection(words):
