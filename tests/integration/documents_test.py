@@ -24,8 +24,8 @@ OWN = {"my_method": "fixture_constant", "my_engine": "kinematic", "runs/NAME": "
 WITH_A_SERVER = ("openai", "cassette:")  # answers_test plays the server
 BUILT_BY_A_READER = ("mine.json", "own_network", "my_stack", "my_statistic", "my_axis", "my_asker", "my_world")
 LONGEST = 300 if FULL else 3  # seconds, as --dry-run expects them
-# run_test, verify_test, consumer_test, study_test, leaderboard_test, cluster_test, python/evals_test
-ELSEWHERE = {"install", "merge", "verify", "new-plugin", "check-plugin", "study", "leaderboard", "cluster", "status", "attribute", "answers"}
+# bench_test, run_test, verify_test, consumer_test, study_test, leaderboard_test, cluster_test, python/evals_test
+ELSEWHERE = {"bench", "install", "merge", "verify", "new-plugin", "check-plugin", "study", "leaderboard", "cluster", "status", "attribute", "answers"}
 
 
 def commands(page):
