@@ -28,8 +28,11 @@ std::vector<Played> recorded(const std::string& run, std::size_t arms, bool unkn
     one.cell.method.name = one.cell.method.id;
     one.cell.method.options = {{"epochs", 750}, {"network", "text"}};
     one.cell.episodes = 20;
-    one.cell.scenario = std::make_shared<const Json>(
-        Json{{"id", "s"}, {"commands", Json::array({Json::object()})}, {"tests", Json(arms, Json::object())}});
+    one.cell.environment = "tabletop";
+    one.cell.scenario = std::make_shared<const Json>(Json{{"id", "s"},
+                                                          {"task", "pick_and_place"},
+                                                          {"commands", Json::array({Json::object()})},
+                                                          {"tests", Json(arms, Json::object())}});
     all.push_back(one);
   }
   return all;
@@ -182,6 +185,17 @@ TEST(Forecasts, SayWhatIsUnknown) {
   EXPECT_FALSE(later.unknown) << "its cells were played";
   EXPECT_EQ(row_of(later).based_on, "this run's cells");
   EXPECT_SAYS(later.text(1), ": about ");
+}
+
+// The half of the most steps is played, in training and in tests.
+TEST(Forecasts, CountSteps) {
+  const std::vector<Played> one_step = recorded("q2", 4);
+  Cell several = one_step.front().cell;
+  Json scenario = *several.scenario;
+  scenario["task"] = "errands";
+  several.scenario = std::make_shared<const Json>(scenario);
+  EXPECT_GT(least_seconds(several), 3 * least_seconds(one_step.front().cell));
+  EXPECT_LT(least_seconds(several), 4 * least_seconds(one_step.front().cell));
 }
 
 TEST(Texts, OfCounts) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 
 namespace lgabench {
@@ -67,6 +68,12 @@ double demonstrations_of(const Cell& cell) {
                                      [](const Json& c) { return !c.is_object() || c.value("seen", Json()) != false; });
 }
 
+// Of an episode, on average: one of several steps may end after any.
+double steps_of(const Cell& cell) {
+  const std::string task = cell.scenario->at("task");
+  return (find_task(find_environment(cell.environment), task).most_steps + 1) / 2.;
+}
+
 }  // namespace
 
 std::string measured_on(const Cell& cell) {
@@ -89,7 +96,7 @@ double usual_seconds(const Cell& cell) {
 double least_seconds(const Cell& cell) {
   const double episodes = cell.episodes * count(*cell.scenario, cell.scenario->contains("played") ? "played" : "tests",
                                                 [](const Json&) { return true; });
-  return start_s + demonstrations_of(cell) * demonstration_s + episodes * episode_s;
+  return start_s + steps_of(cell) * (demonstrations_of(cell) * demonstration_s + episodes * episode_s);
 }
 
 void Costs::learn(const Cell& cell, double seconds) {
