@@ -708,7 +708,8 @@ std::vector<Cell> cells_to_play() {
     for (const int n : {10, 50})
       for (const char* method : {"quick", "slow"}) {
         Cell cell;
-        cell.scenario = std::make_shared<const Json>(Json{{"id", scenario}});
+        cell.scenario = std::make_shared<const Json>(Json{{"id", scenario}, {"task", "pick_and_place"}});
+        cell.environment = "tabletop";
         cell.method.id = cell.method.name = method;
         cell.demonstrations = n;
         cells.push_back(cell);
@@ -791,7 +792,7 @@ TEST(Schedules, MayGiveCellsInAnOrderThatIsDrawn) {
 
 // Would take minutes if each cell were looked for among all.
 TEST(Schedules, OfAHundredThousandCellsAreGivenInSeconds) {
-  std::vector<Cell> cells(100'000);
+  std::vector<Cell> cells(100'000, cells_to_play().front());
   for (std::size_t i = 0; i < cells.size(); ++i) {
     cells[i].method.name = fmt::format("row{}", i % 20);
     cells[i].demonstrations = static_cast<int>(i % 50);
