@@ -40,6 +40,7 @@ class KnownEnvironments {
   }
 
   const EnvironmentType& find(const std::string& id) {
+    if (const EnvironmentType* loaded = if_loaded(id)) return *loaded;
     const std::vector<std::string> own = environment_ids();
     if (contains(own, id)) {
       const std::lock_guard lock(mutex_);
@@ -60,6 +61,12 @@ class KnownEnvironments {
     LoadEnvironment load;
     const EnvironmentType* type = nullptr;
   };
+
+  const EnvironmentType* if_loaded(const std::string& id) {
+    const std::lock_guard lock(mutex_);
+    const auto known = known_.find(id);
+    return known == known_.end() ? nullptr : known->second.type;
+  }
 
   bool has(const std::string& id) {
     const std::lock_guard lock(mutex_);
