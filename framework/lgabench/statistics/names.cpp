@@ -121,6 +121,7 @@ std::string readable(const std::string& text) {
     if (words != id && words.rfind(with, 0) == 0 && out.size() >= with.size() &&
         out.compare(out.size() - with.size(), with.size(), with) == 0)
       words.erase(0, with.size());
+    if (words.empty() && !out.empty() && out.back() == ' ') out.pop_back();  // what goes without saying
     out += words;
     at = end;
   }

@@ -135,6 +135,8 @@ TEST(Readers, ASuiteOfOnesOwnIsNamedByItsFile) {
 TEST(Readers, IdsBecomeWords) {
   for (const auto& [text, words] : std::map<std::string, std::string>{
            {"LGA policy=heat_map, GCBC-DART dart=none.", "LGA with a heat map, GCBC-DART without noise."},
+           {"errand how=words moment=each sets=truth policy=point, above",
+            "errand goes by key words by pointing, above"},
            {"LGA, with instances=first, above", "LGA, with a mask of the first instance, above"},
            {"no row gcbc_seg; needs random_object", "no row GCBC-SEG; needs random visible object"},
            {"in plain_colored_vessel, my_option=0.5", "in plain colored vessel, my option 0.5"},
