@@ -90,12 +90,20 @@ void write_scenes(const fs::path& board, const BoardScenes& scenes) {
   write_file(board / scenes_file, json.dump(1) + "\n");
 }
 
-// Of the episodes that are looked at, the first that ended as it should, in the entry and here, by an action.
-const Episode* same_end(const std::string& which, const std::string& letters, const std::vector<Episode>& played) {
+// Of the episodes that are looked at, those that ended as they should, in the entry and here.
+std::vector<const Episode*> same_ends(const std::string& which, const std::string& letters,
+                                      const std::vector<Episode>& played) {
+  std::vector<const Episode*> same;
   for (std::size_t i = 0; i < played.size(); ++i)
-    if (is_end(which, letters[i]) && played[i].success() == is_success(letters[i]) && !played[i].action.empty())
-      return &played[i];
-  return nullptr;
+    if (is_end(which, letters[i]) && played[i].success() == is_success(letters[i])) same.push_back(&played[i]);
+  return same;
+}
+
+// The first with an action to draw; null where all said at once that nothing is left to do.
+const Episode* to_draw(const std::vector<const Episode*>& episodes) {
+  const auto acts = [](const Episode* episode) { return !episode->action.empty(); };
+  const auto found = std::find_if(episodes.begin(), episodes.end(), acts);
+  return found == episodes.end() ? nullptr : *found;
 }
 
 }  // namespace
@@ -199,10 +207,17 @@ std::optional<std::vector<fs::path>> add_scenes(const fs::path& board, const Ent
   }
   const Scratch scratch("scenes");
   Json requests = Json::array();
-  for (auto& [which, scene] : of_entry) {
+  for (auto one = of_entry.begin(); one != of_entry.end();) {
+    auto& [which, scene] = *one;
     const statistics::CellResult& result = results.at(scene.cell);
     const std::string letters = first_of(cell_of(entry, scene.cell).outcomes.at(scene.arm));
-    const Episode* const episode = same_end(which, letters, result.episodes.at(scene.arm));
+    const std::vector<const Episode*> same = same_ends(which, letters, result.episodes.at(scene.arm));
+    const Episode* const episode = to_draw(same);
+    if (!same.empty() && !episode) {
+      one = of_entry.erase(one);
+      continue;
+    }
+    ++one;
     if (!episode)
       throw InputError(fmt::format("{} {}: none of the first {} episodes ends here as in the entry",
                                    cell_of(entry, scene.cell).place.text(), scene.arm, letters.size()));
