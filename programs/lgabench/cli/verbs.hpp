@@ -25,7 +25,7 @@
 namespace lgabench {
 struct Scenario;
 struct PluginInfo;
-}
+}  // namespace lgabench
 
 namespace lgabench::cli {
 
