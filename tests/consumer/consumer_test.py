@@ -112,7 +112,7 @@ class Package(Consumer):
         headers = sorted(path.relative_to(self.prefix / "include") for path in self.prefix.glob("include/**/*.hpp"))
         headers.remove(pathlib.Path("lgabench/learning/torch_learner.hpp"))  # needs LibTorch; --full builds own_network with it
         of_environments = re.compile("environment|core/(sampling|scenario|scene|view)[.]hpp")
-        self.assertLessEqual(len([header for header in headers if not of_environments.search(str(header))]), 30,
+        self.assertLessEqual(len([header for header in headers if not of_environments.search(str(header))]), 31,
                              "what the author of another plugin has to know")
         self.assertIn("method.hpp", [header.name for header in headers])
         self.assertEqual([header for header in headers if "Private to" in (self.prefix / "include" / header).read_text()], [])

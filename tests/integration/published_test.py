@@ -80,7 +80,7 @@ class Published(Case):
         golden = pathlib.Path(__file__).parent / "golden/ranks.json"
         with open(BOARD / "leaderboard.csv", newline="") as file:  # what its entries make, as the test above has seen
             rows = {(row["id"], row["ranking"]): row for row in csv.DictReader(file) if row["demonstrations"] == "all"}
-        found = {" ".join(name): f'{row["rank"] or "-"} {row["success"]}' for name, row in rows.items()}
+        found = {" ".join(name): f'{row["rank"] or "-"} {row["paired_share"] or row["success"]}' for name, row in rows.items()}
         if os.environ.get("LGABENCH_WRITE_GOLDEN"):
             golden.write_text(json.dumps(found, sort_keys=True, indent=0) + "\n")
         self.assertEqual(found, json.loads(golden.read_text()))
@@ -94,7 +94,7 @@ class Published(Case):
             rankings.setdefault((row["suite"], row["preset"], row["ranking"]), []).append(row)
         self.assertEqual({ranking for _, _, ranking in rankings}, {"any policy", "paper's network", "answers only"})
         for name, own in rankings.items():
-            success, ranks = [float(row["success"]) for row in own], [int(row["rank"]) for row in own if row["rank"]]
+            success, ranks = [float(row["paired_share"] or row["success"]) for row in own], [int(row["rank"]) for row in own if row["rank"]]
             self.assertEqual(success, sorted(success, reverse=True), name)
             self.assertEqual(ranks, sorted(ranks), name)
             self.assertTrue(all(row["not_ranked"] for row in own if not row["rank"]), "a row without a rank says why")

@@ -20,6 +20,7 @@
 #include <lgabench/core/version.hpp>
 #include <lgabench/harness/counted_progress.hpp>
 #include <lgabench/harness/suite.hpp>
+#include <lgabench/host/python_environment.hpp>
 #include <lgabench/host/python_method.hpp>
 #include <lgabench/plugin/loader.hpp>
 
@@ -126,7 +127,7 @@ Json benchmark_json(const std::array<Measured, 2>& both, const BenchArguments& a
                  cpu = seconds_of(measured, phase, &MethodTimes::Phase::cpu_s);
       if (wall.empty()) continue;
       const std::string name = fmt::format("{}/{}", phase, measured.name);
-      const auto add = [&](Json kind, const std::string& called, double wall_s, double cpu_s) {
+      const auto add = [&](const Json& kind, const std::string& called, double wall_s, double cpu_s) {
         Json one = {{"name", called},  {"run_name", name},          {"repetitions", wall.size()}, {"threads", 1},
                     {"iterations", 1}, {"real_time", 1e3 * wall_s}, {"cpu_time", 1e3 * cpu_s},    {"time_unit", "ms"}};
         one.update(kind);
