@@ -20,9 +20,7 @@ constexpr double widest_m = .10;  // of the types that are drawn
 // Why no object of that look may be the cue, else "".
 std::string taken(const Scenario& scenario, const Content& content, const std::string& type,
                   const std::string& texture) {
-  const auto holds = [&](const std::vector<FeatureSet>& sets) {
-    return std::any_of(sets.begin(), sets.end(), [&](const FeatureSet& set) { return set.contains(type, texture); });
-  };
+  const auto holds = [&](const std::vector<FeatureSet>& sets) { return any_contains(sets, type, texture); };
   for (const ScenarioCommand& command : scenario.commands) {
     const Meaning& truth = command.truth.target;
     if (truth.belongs(type, texture) || (truth.which && truth.which->of && truth.which->of->contains(type, texture)))

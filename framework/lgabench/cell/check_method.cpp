@@ -12,6 +12,7 @@
 
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/answering.hpp>
+#include <lgabench/cell/bench.hpp>
 #include <lgabench/cell/check.hpp>
 #include <lgabench/cell/demonstrations.hpp>
 #include <lgabench/cell/evaluator.hpp>
@@ -29,41 +30,10 @@
 namespace lgabench {
 namespace {
 
-constexpr int demonstrations = 10, scenes_an_arm = 5;
-constexpr std::uint64_t seed = 7;
+constexpr int demonstrations = 10;
+constexpr std::uint64_t seed = Bench::seed;
 constexpr const char* determinism =
     "draw all random numbers from services.seed; use no clock, address, uninitialised value or number of threads";
-
-struct Sight {
-  Scene scene;
-  Observation observation;
-};
-
-// A scenario, and the scenes that the method acts in.
-struct Bench {
-  Scenario scenario;
-  std::string layout;
-  std::unique_ptr<Environment> environment;
-  std::vector<Sight> sights;
-
-  Bench(Scenario played, const std::optional<PluginInfo>& engine)
-      : scenario(std::move(played)), layout(layouts_of(scenario).front()) {
-    environment = make_environment(scenario, load_engine(engine));
-    for (const Arm& arm : scenario.tests)
-      for (int i = 0; i < scenes_an_arm; ++i) {
-        const Scene scene = test_scene(scenario, layout, arm.id, seed, i);
-        sights.push_back({scene, environment->reset(scene)});
-      }
-  }
-  /// The same scenes, with what the method needs to see of them.
-  void look_again(const Needs& needs) {
-    environment->show_shadows(needs.shadows);
-    for (Sight& sight : sights) sight.observation = environment->reset(sight.scene);
-  }
-  bool is_seen(const Sight& sight) const {
-    return scenario.commands[static_cast<std::size_t>(sight.scene.command)].seen;
-  }
-};
 
 // What one use of the method, from loading to acting, gave: as text, bit for bit.
 struct Use {

@@ -16,8 +16,7 @@
 namespace lgabench {
 namespace {
 
-constexpr std::uint64_t scene_seed = 7;
-constexpr int tests_an_arm = 5, calls = 50;
+constexpr int calls = 50;
 
 using Clock = std::chrono::steady_clock;
 
@@ -36,39 +35,30 @@ auto timed(MethodTimes& times, const HostedMethod& method, const char* name, Cal
 
 }  // namespace
 
-MethodBench::MethodBench(Scenario scenario, const std::optional<PluginInfo>& engine, int demonstrations)
-    : scenario_(std::move(scenario)), demonstrations_(demonstrations) {
-  environment_ = make_environment(scenario_, load_engine(engine));
-  for (const Arm& arm : scenario_.tests)
-    for (int i = 0; i < tests_an_arm; ++i) {
-      const Scene scene = test_scene(scenario_, layouts_of(scenario_).front(), arm.id, scene_seed, i);
-      tests_.emplace_back(scene, environment_->reset(scene));
-    }
-}
-
-MethodTimes MethodBench::use(HostJob job) {
-  job.environment = scenario_.environment->id();
-  job.task = scenario_.task;
-  job.may_stop = scenario_.may_stop;
+MethodTimes time_of_use(HostJob job, Bench& bench, int demonstrations) {
+  const Scenario& scenario = bench.scenario;
+  job.environment = scenario.environment->id();
+  job.task = scenario.task;
+  job.may_stop = scenario.may_stop;
   job.hidden = runs_below(job.plugin.file.parent_path());
   const std::string& id = job.plugin.id;
   MethodTimes times;
-  Answering asked(scenario_, job, demonstrations_);
+  Answering asked(scenario, job, demonstrations);
   const Clock::time_point start = Clock::now();
   HostedMethod method(job);
   method.needs(job.options);  // the process answers: it has loaded its libraries
   times.phases.push_back({"start", seconds_since(start), method.used().cpu_s});
 
-  Selected selected = timed(times, method, "select", [&] { return select(&method, id, scenario_, asked.services); });
-  if (selected.nothing_to_learn_from(scenario_))
-    throw InputError(fmt::format("{} selects nothing in {}: expected a scenario where it does", id, scenario_.id));
+  Selected selected = timed(times, method, "select", [&] { return select(&method, id, scenario, asked.services); });
+  if (selected.nothing_to_learn_from(scenario))
+    throw InputError(fmt::format("{} selects nothing in {}: expected a scenario where it does", id, scenario.id));
   const std::vector<Scene> scenes =
-      sample(scenario_, layouts_of(scenario_).front(), selected, job.seed, scenario_.training_scenes(demonstrations_));
-  environment_->show_shadows(selected.needs.shadows);
+      sample(scenario, bench.layout, selected, job.seed, scenario.training_scenes(demonstrations));
+  bench.look_again(selected.needs);
   std::vector<Demonstration> shown =
-      instructed(demonstrate(*environment_, scenes, selected.needs, scenario_.utterances()), scenes, selected);
+      instructed(demonstrate(*bench.environment, scenes, selected.needs, scenario.utterances()), scenes, selected);
   const auto policy = timed(times, method, "learn", [&] {
-    revise(method, id, scenario_, shown, scenes, asked.services, selected);
+    revise(method, id, scenario, shown, scenes, asked.services, selected);
     return learn(method, id, shown, asked.services, selected);
   });
   const Actor actor = policy_actor(*policy, selected.instructions, id);
@@ -76,9 +66,9 @@ MethodTimes MethodBench::use(HostJob job) {
       times, method, "act",
       [&] {
         for (int i = 0; i < calls; ++i) {
-          const auto& [scene, seen] = tests_[static_cast<std::size_t>(i) % tests_.size()];
+          const auto& [scene, seen] = bench.sights[static_cast<std::size_t>(i) % bench.sights.size()];
           policy->reset();
-          actor.act(*environment_, scene, seen);
+          actor.act(*bench.environment, scene, seen);
         }
         return calls;
       },

@@ -1,13 +1,9 @@
 // How long a method takes, and how much memory: `lgabench bench`.
 #pragma once
-#include <memory>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include <lgabench/core/environment.hpp>
-#include <lgabench/core/scenario.hpp>
+#include <lgabench/cell/bench.hpp>
 #include <lgabench/host/host_session.hpp>
 
 namespace lgabench {
@@ -23,22 +19,9 @@ struct MethodTimes {
   long long peak_bytes = 0;     // the most memory that the process had in use, as the system counts it (VmHWM)
 };
 
-/// A scenario with what methods see in it: demonstrations in its first layout, and a test scene of each arm.
-class MethodBench {
- public:
-  /// @throws EngineError
-  MethodBench(Scenario scenario, const std::optional<PluginInfo>& engine, int demonstrations);
-
-  /// Uses the method as a cell does, once, confined; its environment is the scenario's. Demonstrations are made while
-  /// no clock runs. @throws PluginError, MethodError, MethodGone, EngineError; InputError where what it selects leaves
-  /// nothing to learn from.
-  MethodTimes use(HostJob job);
-
- private:
-  const Scenario scenario_;
-  const int demonstrations_;
-  std::unique_ptr<Environment> environment_;
-  std::vector<std::pair<Scene, Observation>> tests_;
-};
+/// Uses the method as a cell does, once, confined, with so many demonstrations of each command; its environment is the
+/// bench's. Demonstrations are made while no clock runs. @throws PluginError, MethodError, MethodGone, EngineError;
+/// InputError where what it selects leaves nothing to learn from.
+MethodTimes time_of_use(HostJob job, Bench& bench, int demonstrations);
 
 }  // namespace lgabench

@@ -201,7 +201,7 @@ bool worded_otherwise(const std::string& asked_as, const std::string& utterance)
   const auto words = [](std::string_view text) {
     return !text.empty() && text.back() == '.' ? text.substr(0, text.size() - 1) : text;
   };
-  return words(asked_as) != words(utterance);
+  return !asked_as.empty() && words(asked_as) != words(utterance);
 }
 
 }  // namespace lgabench::statistics

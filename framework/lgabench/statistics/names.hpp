@@ -68,7 +68,7 @@ std::string provenance_words(const std::string& provenance, bool erring);
 /// `source`: the model, as the Selection names it.
 bool was_asked(const std::string& provenance, const std::string& source);
 
-/// Whether two wordings differ by more than a final full stop.
+/// Whether two wordings differ by more than a final full stop. `asked_as`: "" where nobody was asked.
 bool worded_otherwise(const std::string& asked_as, const std::string& utterance);
 
 }  // namespace lgabench::statistics

@@ -46,8 +46,12 @@ struct Measured {
 constexpr std::array<const char*, 5> phases{"start", "select", "learn", "act", "save"};
 
 PluginInfo plugin_of(const std::string& word, const Catalogue& catalogue, const std::string& python) {
-  if (is_python_method(word)) return describe_python(word, python);
-  const PluginInfo plugin = fs::path(word).extension() == ".so" ? read_plugin(word) : catalogue.find("method", word);
+  const bool is_python = is_python_method(word), is_library = fs::path(word).extension() == ".so";
+  if (is_python || is_library)
+    if (const std::string missing = missing_plugin(word); !missing.empty()) throw InputError(missing);
+  const PluginInfo plugin = is_python    ? describe_python(word, python)
+                            : is_library ? read_plugin(word)
+                                         : catalogue.find("method", word);
   if (plugin.kind != "method")
     throw InputError(fmt::format("{}: expected a method, got a plugin of kind {}", word, plugin.kind));
   return plugin;
@@ -146,8 +150,6 @@ Json benchmark_json(const std::array<Measured, 2>& both, const BenchArguments& a
 }
 
 void bench(const BenchArguments& a) {
-  if (const std::string missing = a.method.find('/') != a.method.npos ? missing_plugin(a.method) : ""; !missing.empty())
-    throw InputError(missing);
   const Catalogue catalogue = plugins_at(a.plugin_path, a.python);
   std::array<Measured, 2> both;
   both[0].plugin = plugin_of(a.method, catalogue, a.python);
@@ -161,7 +163,7 @@ void bench(const BenchArguments& a) {
   const Scenario scenario = load_scenario(a.scenario);
   const EnvironmentType& type = *scenario.environment;
   const std::string engine = a.engine.empty() ? default_engine(catalogue, type) : a.engine;
-  MethodBench used(scenario, catalogue.engine(engine, type), a.demonstrations);
+  Bench played(scenario, catalogue.engine(engine, type));
   const Descriptor out{::dup(1)};
   ::dup2(2, 1);  // what the methods print
   CountedProgress progress("uses measured:", 2 * a.repetitions);
@@ -170,7 +172,7 @@ void bench(const BenchArguments& a) {
       Measured& measured = both[(turn + static_cast<std::size_t>(k)) % both.size()];  // neither is always the first
       const Scratch scratch("bench");
       HostJob job{measured.plugin, type.id(), measured.options, 0, scratch.path};
-      measured.uses.push_back(used.use(job));
+      measured.uses.push_back(time_of_use(job, played, a.demonstrations));
       progress.tell_next();
     }
   progress.end();

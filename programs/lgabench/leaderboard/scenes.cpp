@@ -212,15 +212,15 @@ std::optional<std::vector<fs::path>> add_scenes(const fs::path& board, const Ent
     const statistics::CellResult& result = results.at(scene.cell);
     const std::string letters = first_of(cell_of(entry, scene.cell).outcomes.at(scene.arm));
     const std::vector<const Episode*> same = same_ends(which, letters, result.episodes.at(scene.arm));
+    if (same.empty())
+      throw InputError(fmt::format("{} {}: none of the first {} episodes ends here as in the entry",
+                                   cell_of(entry, scene.cell).place.text(), scene.arm, letters.size()));
     const Episode* const episode = to_draw(same);
-    if (!same.empty() && !episode) {
+    if (!episode) {
       one = of_entry.erase(one);
       continue;
     }
     ++one;
-    if (!episode)
-      throw InputError(fmt::format("{} {}: none of the first {} episodes ends here as in the entry",
-                                   cell_of(entry, scene.cell).place.text(), scene.arm, letters.size()));
     scene.index = episode->index;
     scene.command = result.commands.at(static_cast<std::size_t>(episode->command)).utterance;
     requests.push_back(to_json(PictureRequest{directories.at(scene.cell) / cell_file::configuration,

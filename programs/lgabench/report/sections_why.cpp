@@ -172,7 +172,7 @@ Section phi(const Material& material) {
       put(grid, "a person's seconds", 'r', phi_number(row, place + "human_seconds", phi.human_seconds, 0));
     }
     const std::string wording = fmt::format("{}, of {}: “{}”", row.scenario, phi.source, phi.asked_as);
-    if (!phi.asked_as.empty() && worded_otherwise(phi.asked_as, phi.utterance)) known.insert(wording);
+    if (worded_otherwise(phi.asked_as, phi.utterance)) known.insert(wording);
   }
   if (grid.rows.empty()) return section;
   section.add_detail(
