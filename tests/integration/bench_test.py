@@ -40,10 +40,21 @@ class Nothing:
 """
 
 
+LENS = """
+class Lens:
+    levels = ["1"]
+    changes = ["rgb"]
+
+    def perceive(self, seen, level, stream):
+        return seen
+"""
+
+
 class Bench(Case):
     def setUp(self):
         super().setUp()
         (self.dir / "slow.py").write_text(SLOW)
+        (self.dir / "lens.py").write_text(LENS)
 
     def bench(self, *words, **more):
         return self.call("bench", *words, "--python", PYTHON, **more)
@@ -94,6 +105,8 @@ class Bench(Case):
     def test_what_cannot_be_measured_says_why(self):
         for words, status, why in ((("slow.py:Nothing", "--demos", "1"), 2, "slow selects nothing in heart"),
                                    (("none/x.so",), 2, "none/x.so: no such file"),
+                                   (("lens.py:Lens",), 2, "expected a method, got a plugin of kind perturbation"),
+                                   (("human", "--beside", "none.py:None"), 2, "none.py: no such file"),
                                    (("nobody",), 4, 'no method "nobody"'),
                                    (("human", "--set", "policy"), 2, "--set policy: expected option=value"),
                                    (("human", "--set", "policy=none"), 2, "/policy: expected one of"),
