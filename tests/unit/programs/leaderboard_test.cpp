@@ -501,10 +501,10 @@ TEST(LeaderboardEntry, SaysEachSelectionOnceAndIsReadInItsLongFormToo) {
   large["said"][0] = std::string(1 << 20, 'x');
   large["said"][1] = Json::parse(R"({"provenance": "rule", "target": [0, 0, 0, 0, 0, 0, 0, 0, 0]})");
   large["said"][2] = Json::parse(R"({"utterance": "a", "selection": 1, "quality": null})");
-  large["phi"]["heart"] = Json::array({std::vector<int>(2, 2)});
+  large["phi"]["heart"] = Json::array({std::vector<int>(3, 2)});
   write_file(file, large.dump(1) + "\n");
   EXPECT_SAYS(message_of<InputError>([&] { read_entry(board.path, entry.place()); }),
-              "/said: expected values of at most 8388608 bytes");
+              "/said: expected values of at most 25165824 bytes");
 }
 
 TEST(LeaderboardEntry, LinesThatNobodyVouchesForAreFewAndCheap) {
