@@ -38,8 +38,8 @@ def main():
     for report in sorted(directory.glob("*.xml")):
         by_program = seconds_of_tests(report, report.with_suffix(".json"))
         cases = [case for cases in by_program.values() for case in cases]
-        print(f"\n{report.stem}: seconds of a process by program, {sum(time for time, _ in cases):.0f} in {len(cases)} tests; the longest test")
-        for program, of_program in sorted(by_program.items(), key=lambda item: -sum(time for time, _ in item[1])):
+        print(f"\n{report.stem}: seconds of a process by program, {sum(time for time, _ in cases):.0f} in {len(cases)} tests; the longest test; what takes most stands last")
+        for program, of_program in sorted(by_program.items(), key=lambda item: sum(time for time, _ in item[1])):
             longest, name = max(of_program)
             print(f"{sum(time for time, _ in of_program):7.0f}  {program}, {len(of_program)} tests; {longest:.0f} {name}")
 

@@ -142,8 +142,8 @@ add_test(integration.Class python3 here/cli_test.py Class)
 END
 tests_of tree all || echo failed""")
         self.assertIn("failed", done.stdout)  # there is no cli_test.py
-        self.assertRegex(done.stdout, r"\nall: seconds of a process by program, 1 in 3 tests; the longest test\n"
-                                      r" +1  sleep, 2 tests; 1 Slow.one\n +0  cli_test.py, 1 tests; 0 integration.Class\n")
+        self.assertRegex(done.stdout, r"\nall: seconds of a process by program, 1 in 3 tests; the longest test; what takes most stands last\n"
+                                      r" +0  cli_test.py, 1 tests; 0 integration.Class\n +1  sleep, 2 tests; 1 Slow.one\n")
 
     def test_a_test_that_fails_beside_others_alone(self):
         tests = "add_test(Fails false)\n", "add_test(Once bash -c \"test -e ../once || ! touch ../once\")\n"
