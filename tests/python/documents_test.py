@@ -154,6 +154,38 @@ class Examples(Case):
             self.assertEqual(env.unwrapped.scenario.id, scenario)
             self.assertTrue(env.action_space.contains(read[0].actions[0]))
 
+    @unittest.skipUnless(importlib.util.find_spec("vla_eval"), "not installed: vla_eval")
+    def test_vla_evals_server_has_the_oracles_successes(self):
+        import vla_eval.api
+        from lgabench.gym import SceneEnv
+        from vla_eval.model_servers.predict import PredictModelServer
+
+        shown = {}  # by what is seen: the command and what the oracle does then
+        for scenario in self.files:
+            env = SceneEnv(scenario, split="test")
+            for scene in range(3):
+                seen, ended = env.reset(seed=scene)[0], False
+                while not ended:
+                    action = shown[seen["rgb"].tobytes()] = seen["instruction"], env.expert_action()
+                    seen, _, terminated, truncated, _ = env.step(action[1])
+                    ended = terminated or truncated
+
+        class Server(PredictModelServer):
+            def __init__(self, scale):
+                super().__init__()
+                self.scale = scale
+
+            def predict(self, obs, ctx):
+                words, action = shown[obs["images"]["top"].tobytes()] if self.scale else (obs["task_description"], numpy.zeros(8))
+                assert words == obs["task_description"], obs["task_description"]
+                return {"actions": action}
+
+        for scale in 1, 0:
+            config = {"benchmarks": [{"benchmark": "to_vla_eval:Scenarios", "episodes_per_task": 3,
+                                      "params": {"scenarios": list(self.files), "engine": None}}]}
+            result, = vla_eval.api.evaluate(Server(scale), config, output_dir=self.dir / "out", no_save=True)
+            print(result)
+
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv)
