@@ -68,9 +68,9 @@ class Examples(Case):
         super().setUp()
         sys.path.insert(0, str(SOURCE / "examples/python"))
         self.files = {}
-        for scenario, words in ("heart", ("--layout", "cells")), ("reach2d_red", ("--noisy", 1)):
+        for scenario, words in ("heart", ("--engine", ENGINE, "--layout", "cells")), ("reach2d_red", ("--noisy", 1)):
             self.files[scenario] = self.dir / (scenario + ".hdf5")
-            self.call("demos", scenario, "--engine", ENGINE, *words, "--n", 12, "--out", self.files[scenario])
+            self.call("demos", scenario, *words, "--n", 12, "--out", self.files[scenario])
 
     @unittest.skipUnless(installed("lerobot"), "not installed: lerobot, or no LGABENCH_FULL")
     def test_lerobot_reads_what_its_writer_wrote(self):
@@ -176,15 +176,16 @@ class Examples(Case):
                 self.scale = scale
 
             def predict(self, obs, ctx):
-                words, action = shown[obs["images"]["top"].tobytes()] if self.scale else (obs["task_description"], numpy.zeros(8))
+                words, action = shown[obs["images"]["top"].tobytes()]
                 assert words == obs["task_description"], obs["task_description"]
-                return {"actions": action}
+                return {"actions": self.scale * action}
 
         for scale in 1, 0:
             config = {"benchmarks": [{"benchmark": "to_vla_eval:Scenarios", "episodes_per_task": 3,
-                                      "params": {"scenarios": list(self.files), "engine": None}}]}
+                                      "params": {"scenarios": list(self.files)}, "max_steps": None if scale else 1}]}  # what is seen after it is not in `shown`
             result, = vla_eval.api.evaluate(Server(scale), config, output_dir=self.dir / "out", no_save=True)
-            print(result)
+            self.assertEqual(result["num_errors"], 0)
+            self.assertEqual({one["task"]: one["mean_success"] for one in result["tasks"]}, {one: scale for one in self.files})
 
 
 if __name__ == "__main__":
