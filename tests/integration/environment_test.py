@@ -15,6 +15,10 @@ TABLETOP = ("run", "q1", "--scenarios", "heart", "--layout", "cells", "--methods
             "--set", "*.epochs=2", "--no-reference", "--out", "tabletop")
 
 
+def identity_of(entry):
+    return json.loads(entry.read_text())["id"]
+
+
 class PluginEnvironments(Case):
     def setUp(self):
         super().setUp()
@@ -69,6 +73,33 @@ class PluginEnvironments(Case):
             (self.dir / "own.json").write_text(json.dumps(scenario))
             said = self.call("check-scenario", "own.json", *path, expect=2).stderr
             self.assertIn(f"{axis}: expected an environment with an engine plugin, reach2d has none", said)
+
+    def test_a_board_of_ones_own_suite_in_ones_own_environment(self):
+        path = ("--plugin-path", self.installed())
+        shutil.copytree(SOURCE, self.dir / "mine")
+        self.environment["LGABENCH_SCENARIO_PATH"] = str(self.dir / "mine")
+        suite = json.loads((SOURCE / "reach2d_suite.json").read_text())
+        suite["presets"] = {"board": {"demonstrations": [1], "episodes": 4, "scene_seed": 5}}
+        (self.dir / "mine/reach2d_suite.json").write_text(json.dumps(suite))
+        (self.dir / "me.json").write_text(json.dumps({"by": "A. Author", "authors": ["A. Author"], "license": "Apache-2.0",
+                                                      "source": {"repository": "https://example.org/a", "commit": "0" * 40}}))
+        self.call("run", "reach2d_suite", "--preset", "board", "--answers", "none", "--engines", "own", "--no-reference", "--out", "run", *path)
+        added = self.call("leaderboard", "add", "run", "--entry", "me.json", "--board", "board", *path).stdout
+        self.assertIn("added entries/human/", added)
+        entry, = self.dir.glob("board/entries/human/*/*/entry.json")
+        identity, evidence = (json.loads(entry.read_text())[member] for member in ("identity", "evidence"))
+        self.assertEqual(identity["engine"], {"id": "own", "version": "0.1"})
+        self.assertEqual([(one["kind"], one["id"]) for one in evidence[0]["plugins"]], [("environment", "reach2d"), ("method", "human")])
+        board = ("--board", "board", *path)
+        self.assertIn("2 of 2 cells bit-identical", self.call("leaderboard", "verify", identity_of(entry), "--by", "B", *board).stdout)
+        self.call("leaderboard", "vouch", identity_of(entry), "1", *board)
+        self.call("leaderboard", "build", *board)
+        self.assertIn("1 entry, 0 problems", self.call("leaderboard", "check", *board).stdout)
+        self.assertIn("| replayed; the truth stands in for people |", (self.dir / "board/README.md").read_text())
+        said = self.call("leaderboard", "verify", identity_of(entry), "--by", "B", "--board", "board", expect=2)
+        self.assertIn("reach2d", said.stdout + said.stderr, "not without the environment")
+        self.environment["LGABENCH_SCENARIO_PATH"] = ""
+        self.assertRegex(self.call("run", "reach2d_suite", *path, expect=2).stderr, 'no suite "reach2d_suite", expected one of')
 
     def test_a_report_needs_none(self):
         self.run_suite("--plugin-path", self.installed())

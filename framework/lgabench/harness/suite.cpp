@@ -8,6 +8,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/scenario_files.hpp>
+#include <lgabench/core/scenario_path.hpp>
 #include <lgabench/core/shipped.hpp>
 #include <lgabench/harness/lists.hpp>
 #include <lgabench/record/reference_rows.hpp>
@@ -136,18 +137,26 @@ void read_changes(const JsonReader& reader, Suite& suite) {
   }
 }
 
+// A shipped one, a file, or one on the scenario path.
+fs::path suite_file(const std::string& id) {
+  std::vector<std::string> known = shipped_names("suites");
+  if (contains(known, id)) return data_directory() / "suites" / (id + ".json");
+  if (fs::path(id).extension() == ".json") return id;
+  for (const auto& [own, file] : files_on_scenario_path("scenarios")) {
+    if (own == id) return file;
+    known.push_back(own);
+  }
+  known.emplace_back("or a .json file");
+  throw InputError(none_named("suite", id, known));
+}
+
 }  // namespace
 
 Suite load_suite(const std::string& id) {
-  const bool is_file = fs::path(id).extension() == ".json";
-  std::vector<std::string> known = shipped_names("suites");
-  if (!is_file && !contains(known, id)) {
-    known.emplace_back("or a .json file");
-    throw InputError(none_named("suite", id, known));
-  }
-  const fs::path file = is_file ? fs::path(id) : data_directory() / "suites" / (id + ".json");
+  const fs::path file = suite_file(id);
+  const bool is_own = !is_shipped(file);
   const Json json = read_shipped_json(file);
-  if (is_file) add_scenario_path(fs::absolute(file).parent_path());
+  if (is_own) add_scenario_path(fs::absolute(file).parent_path());
   const JsonReader reader(json, file.string());
   std::vector<std::string> members = needed_design_members;
   members.insert(members.end(), optional_design_members.begin(), optional_design_members.end());
@@ -175,7 +184,7 @@ Suite load_suite(const std::string& id) {
   }
   if (reader.has("about")) {
     expect_about(reader.at("about"));
-    if (is_file) suite.about = reader.at("about").json();
+    if (is_own) suite.about = reader.at("about").json();
   }
   suite.claims = claims_beside(file);
   for (const std::string& preset : names_of(suite.presets)) preset_design(suite, preset);

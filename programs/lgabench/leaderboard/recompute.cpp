@@ -207,8 +207,8 @@ Installed installed_as(const Entry& entry, const Catalogue& catalogue) {
   expect_same("preset " + entry.setting.name(), hash(installed.setting).substr(0, 8),
               entry.identity.preset_sha256.substr(0, 8));
   expect_same("scene seed", std::to_string(installed.setting.scene_seed), std::to_string(entry.setting.scene_seed));
-  expect_same("version of " + entry.identity.engine, catalogue.find("engine", entry.identity.engine).version,
-              entry.identity.engine_version);
+  const auto& [kind, id] = player_of(entry.identity.engine, installed.suite);
+  expect_same("version of " + id, catalogue.find(kind, id).version, entry.identity.engine_version);
   return installed;
 }
 

@@ -134,12 +134,14 @@ std::string published(const std::string& command) {
   return slash == std::string::npos ? command : (quoted ? "'" : "") + command.substr(slash + 1);
 }
 
-Json evidence_of(const RunResults& run, const Identity& identity, const Json& data, const Json& about) {
+Json evidence_of(const RunResults& run, const Suite& suite, const Identity& identity, const Json& data,
+                 const Json& about) {
   Json plugins = Json::array();
   const RunRecord& record = run.record;
   const auto& acts = identity.row.acts;
+  const auto player = player_of(identity.engine, suite);
   for (const RunRecord::Plugin& plugin : record.plugins)
-    if ((plugin.kind == "engine" && plugin.id == identity.engine) ||
+    if (std::pair(plugin.kind, plugin.id) == player ||
         (plugin.kind == "method" && (plugin.id == identity.row.id || (acts && plugin.id == acts->id))))
       plugins.push_back(
           {{"kind", plugin.kind}, {"id", plugin.id}, {"version", plugin.version}, {"sha256", plugin.sha256}});
@@ -191,7 +193,8 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Catalogu
   entry.identity.answers = first.answers;
   entry.identity.answers_sha256 = answers_hash(run.directory, installed, first, reasons);
   entry.identity.engine = first.engine;
-  entry.identity.engine_version = version_of(run, "engine", first.engine);
+  const auto [kind, player] = player_of(first.engine, installed.suite);
+  entry.identity.engine_version = version_of(run, kind, player);
   const Conditions conditions = entry.identity.conditions = Conditions::of(first);
   if (const std::string refusal = conditions.refusal(); !refusal.empty())
     reasons.add(first.method.name + ": " + refusal);
@@ -233,7 +236,7 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Catalogu
     if (file.empty() || fs::exists(file))  // else there is a reason already
       entry.score = score_of_answers(installed, entry.identity.row, entry.identity.answers, file);
   }
-  entry.evidence.push_back(evidence_of(run, entry.identity, data, about));
+  entry.evidence.push_back(evidence_of(run, installed.suite, entry.identity, data, about));
   return entry;
 }
 

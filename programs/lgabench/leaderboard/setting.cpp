@@ -7,6 +7,7 @@
 
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/core/contains.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/leaderboard/fields.hpp>
 
@@ -168,6 +169,11 @@ Installed installed_setting(const std::string& suite, const std::string& preset)
   }
   add_pairs(scenarios, setting);
   return installed;
+}
+
+std::pair<std::string, std::string> player_of(const std::string& engine, const Suite& suite) {
+  if (engine == own_engine) return {"environment", suite.environment};
+  return {"engine", engine};
 }
 
 std::vector<Cell> cells_of_row(const Installed& installed, const Competitor& row, const std::string& engine,

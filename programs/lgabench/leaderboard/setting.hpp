@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include <lgabench/core/json.hpp>
@@ -74,6 +75,10 @@ struct Installed {
 /// @throws InputError for a suite that is not installed, or a preset without a scene seed of its own: it is none of the
 /// board's, since methods are tuned on the others' scenes.
 Installed installed_setting(const std::string& suite, const std::string& preset);
+
+/// A plugin by kind and id: what a row's episodes are played by, an engine or, where the environment has none
+/// (own_engine), the environment.
+std::pair<std::string, std::string> player_of(const std::string& engine, const Suite& suite);
 
 /// The cells of a row, in the order of places(). Their keys are those of a run of this row alone. @throws InputError
 /// where the environment has no such reader.
