@@ -48,9 +48,9 @@ struct Suite {
   std::string file;                     // for messages
 };
 
-/// The suite named `id` from the data directory's suites/ or else from the scenario path, or the file `id` if it ends in
-/// .json; scenarios beside a file of the user's own are then found too. Every preset is checked. @throws InputError with file and place; for an unknown id it lists
-/// the known ones.
+/// The suite named `id` from the data directory's suites/ or else from the scenario path, or the file `id` if it ends
+/// in .json; scenarios beside a file of the user's own are then found too. Every preset is checked. @throws InputError
+/// with file and place; for an unknown id it lists the known ones.
 Suite load_suite(const std::string& id);
 
 /// The environment's engine where nobody names one: own_engine, or the first plugin that a shipped suite is played on
