@@ -114,7 +114,8 @@ void read_changes(const JsonReader& reader, Suite& suite) {
   const auto named = [](const char* what, const std::vector<std::string>& known) {
     return [what, &known](const JsonReader& value) { return name_among(value, what, known); };
   };
-  const std::vector<std::string> scenarios = scenario_ids(), files = shipped_answers();
+  const std::vector<std::string> scenarios = scenario_ids();
+  const std::vector<std::string>& files = shipped_answers();
   std::vector<std::string> with_variants = played;
   if (reader.has("variants"))
     for (const std::string& scenario : played)
