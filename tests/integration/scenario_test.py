@@ -83,6 +83,7 @@ class OwnScenario(Case):
             "negation": ("a heart of any colour but red", "--types", "heart", "--textures", "ALL but red", "--careless", "heart/red"),
             "union": ("a red heart or a blue star", "--types", "heart", "--textures", "red", "--also", "star/blue",
                       "--careless", "heart/blue", "--careless", "star/red"),
+            "either": ("a red heart or a blue star", "--types", "heart", "--textures", "red", "--also", "star/blue"),
             "relation": ("the heart left of the bowl", "--types", "heart", "--which", "left_of", "--relative-to", "bowl"),
             "superlative": ("the letter that comes first in 'grate'", "--types", "letter A,letter E,letter G", "--which",
                             "first_in", "--order", "letter G,letter A,letter E"),

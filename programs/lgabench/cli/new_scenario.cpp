@@ -120,7 +120,8 @@ Json scenario_json(const NewScenario& a) {
   if (!a.careless.empty()) json["near_miss_sets"] = sets_of(a.careless);
   if (!a.words.empty()) json["words"] = set_of(a.words);
   if (!a.undecided.empty()) json["undecided"] = sets_of(a.undecided);
-  if (!a.careless.empty() || !a.rule.empty()) json["train"] = {{"as_method_asks", false}, {"distractors", distractors}};
+  if (!a.also.empty() || !a.careless.empty() || !a.rule.empty())
+    json["train"] = {{"as_method_asks", false}, {"distractors", distractors}};
   return json;
 }
 

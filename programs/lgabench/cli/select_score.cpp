@@ -230,7 +230,8 @@ struct SuiteScores {
   bool hopeless = false;  // what was left out has answers that cannot be read
 };
 
-SuiteScores ask_all(const Suite& suite, Truth truth, int scenes, const WithAnswers& with_answers) {
+SuiteScores ask_all(const Suite& suite, Truth truth, int scenes, bool expects_answers,
+                    const WithAnswers& with_answers) {
   SuiteScores all;
   const auto unless_impossible = [&all](const char* what, const std::function<void()>& ask) {
     try {
@@ -242,15 +243,18 @@ SuiteScores ask_all(const Suite& suite, Truth truth, int scenes, const WithAnswe
       all.left_out.push_back(fmt::format("{}: {}", what, one_line(e.what())));
     }
   };
-  CountedProgress progress("commands scored:", static_cast<int>(std::size(ways_of_asking)) * commands_of(suite, truth));
-  for (const char* asking : ways_of_asking)
+  std::vector<const char*> asked{"named"};  // which asks nobody
+  if (expects_answers) asked.assign(std::begin(ways_of_asking), std::end(ways_of_asking));
+  CountedProgress progress("commands scored:", static_cast<int>(asked.size()) * commands_of(suite, truth));
+  for (const char* asking : asked)
     unless_impossible(asking, [&] {
       const Scores scores = scores_of(asking, suite, truth, scenes, with_answers, progress);
       all.open.add(scores.open);
       all.by_asking[asking] = scores;
     });
   progress.end();
-  unless_impossible("hypotheses", [&] { all.covered = coverage_of(suite, truth, with_answers, all.open); });
+  if (expects_answers)
+    unless_impossible("hypotheses", [&] { all.covered = coverage_of(suite, truth, with_answers, all.open); });
   return all;
 }
 
@@ -306,15 +310,17 @@ void print_groups(const Suite& suite, const std::vector<std::string>& arms, cons
 
 void print_scores(const Suite& suite, Truth truth, int scenes, bool json, bool expects_answers,
                   const WithAnswers& with_answers) {
-  const SuiteScores asked = ask_all(suite, truth, scenes, with_answers);
-  if (asked.by_asking.count("named") == 0)  // which asks nobody: no scene can be had
+  const SuiteScores asked = ask_all(suite, truth, scenes, expects_answers, with_answers);
+  if (asked.by_asking.count("named") == 0)  // no scene can be had
     throw InputError(fmt::format("{}", fmt::join(asked.left_out, "; ")));
   const std::vector<std::string> sources = sources_in(asked),
                                  arms = named_arms(asked.by_asking.at("named").commands, suite);
   if (!json)
-    to_stdout("answers of {}; {} scenes of each arm\n\n{:<14} {:<11} {:>4}  {:<18}  {:>5}  {:>9}  {:>6}  {:>9}{}\n",
-              sources.empty() ? "none" : fmt::format("{}", fmt::join(sources, " and ")), scenes, "", "asked", "n",
-              "scenes exact", "sets", "precision", "recall", "questions", arms.empty() ? "" : "  otherwise");
+    to_stdout("{}; {} scenes of each arm\n\n{:<14} {:<11} {:>4}  {:<18}  {:>5}  {:>9}  {:>6}  {:>9}{}\n",
+              sources.empty() ? (expects_answers ? "nobody answered" : "nobody was asked")
+                              : fmt::format("answers of {}", fmt::join(sources, " and ")),
+              scenes, "", "asked", "n", "scenes exact", "sets", "precision", "recall", "questions",
+              arms.empty() ? "" : "  otherwise");
   print_groups(suite, arms, asked, json);
   const std::string why = fmt::format("{}{}", fmt::join(asked.left_out, "\n"), asked.left_out.empty() ? "" : "\n");
   if (json)
