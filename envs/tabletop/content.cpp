@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include <tabletop/cue.hpp>
 #include <tabletop/errand_scenes.hpp>
+#include <tabletop/placement.hpp>
 #include <tabletop/rivals.hpp>
 #include <tabletop/task.hpp>
 
@@ -99,6 +101,16 @@ std::vector<FeatureSet> read_sets(const JsonReader& reader, const FeatureSpace& 
   return sets;
 }
 
+// Whether a scene can show one of the set's objects that is not `meant` and on which people agree.
+bool shows_another(const FeatureSet& set, const Meaning& meant, const std::vector<FeatureSet>& undecided) {
+  for (const std::string& type : set.object_types)
+    for (const std::string& texture : set.textures)
+      if (can_show(type, std::numeric_limits<double>::infinity()) && !meant.belongs(type, texture) &&
+          !any_contains(undecided, type, texture))
+        return true;
+  return false;
+}
+
 // What a careless reading keeps, and which scenes show it.
 void read_meant(const Scenario& scenario, const JsonReader& file, const JsonReader* scenes, bool training,
                 Content& content) {
@@ -111,7 +123,13 @@ void read_meant(const Scenario& scenario, const JsonReader& file, const JsonRead
   }
   if (file.has("words")) content.words = read_meaning(file.at("words"), scenario.space);
   if (file.has("undecided")) content.undecided = read_sets(file.at("undecided"), scenario.space);
-  if (file.has("near_miss_sets")) content.near_miss_sets = read_sets(file.at("near_miss_sets"), scenario.space);
+  if (file.has("near_miss_sets")) {
+    content.near_miss_sets = read_sets(file.at("near_miss_sets"), scenario.space);
+    const std::vector<JsonReader> sets = file.at("near_miss_sets").elements();
+    for (std::size_t i = 0; i < sets.size(); ++i)
+      if (!shows_another(content.near_miss_sets[i], truth, content.undecided))
+        sets[i].fail("objects that scenes can show and that the command does not mean");
+  }
   if (find_task(scenario.task).most_distractors() < content.others())
     file.at("task").fail(
         "pick_and_place where a command has several sets or a rule, or the scenario \"near_miss_sets\"");

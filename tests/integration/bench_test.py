@@ -34,6 +34,16 @@ class Slow:
         return type("Still", (), {"act": lambda self, observation, instruction: time.sleep(.02) or action})()
 
 
+class Hangs(Slow):
+    def learn(self, demonstrations, services):
+        time.sleep(3600)
+
+
+class Large(Slow):
+    def learn(self, demonstrations, services):
+        self.held = bytearray(b"1" * 2_000_000_000)
+
+
 class Nothing:
     def select(self, command, space, services):
         return Selection()
@@ -101,6 +111,14 @@ class Bench(Case):
         learn = next(line for line in said.splitlines() if line.startswith("learn"))
         self.assertLess(float(learn.split("ms")[2].split(",")[0]), 1, "who points does not train")
         self.assertRegex(said, r"(?m)^memory +[\d.]+ MiB +[\d.]+ MiB  \d\.\d\d$")
+
+    def test_a_use_has_limits(self):
+        said = self.bench("slow.py:Hangs", "--beside", "human", "--demos", "1", "--timeout", "20", expect=3)
+        self.assertRegex(said.stderr, r"^measuring slow and human, each 9 times\n(?s:.*)lgabench: slow: its use took longer than 20 s \(--timeout\)")
+        self.assertEqual(said.stdout, "")
+        said = self.bench("slow.py:Large", "--beside", "human", "--demos", "1", "--memory", "1", expect=3)
+        self.assertRegex(said.stderr, "(?i)memory")
+        self.assertEqual(said.stdout, "")
 
     def test_what_cannot_be_measured_says_why(self):
         for words, status, why in ((("slow.py:Nothing", "--demos", "1"), 2, "slow selects nothing in heart"),

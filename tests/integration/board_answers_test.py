@@ -278,7 +278,8 @@ class FreshCommands(Board):
         before = self.standings()
         self.assertEqual(before["table"][0], "1")
         self.assertNotEqual(before["lga"][0], "–")
-        self.assertIn("never on fresh scenes", before["table"][1])
+        for row in "table", "lga":
+            self.assertIn("never on fresh scenes; never on fresh commands", before[row][1])
         said = self.verify("--fresh-commands", self.NONCE, expect=1).stdout
         self.assertRegex(said, r"(?m)^DIFFERS entries/table/\S+: 0 of 40 drawn commands exact \(lga: 40\), 2 of 2 published \(nonce 5eed")
         self.assertRegex(said, r"(?m)^agrees  entries/lga/\S+: 40 of 40 drawn commands exact \(lga: 40\), \d of 2 published")
@@ -293,7 +294,7 @@ class FreshCommands(Board):
         self.assertEqual(after["lga"][0], "1")
         self.assertEqual(after["table"][0], "–")
         self.assertIn("differs on fresh commands", after["table"][1])
-        self.assertIn("fresh commands", after["lga"][1])
+        self.assertIn("; fresh commands; never on fresh scenes", after["lga"][1])
         self.leaderboard("check")
 
         # A nonce that anybody may know; what is none; too few; lines whose counts say otherwise.

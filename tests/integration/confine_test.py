@@ -102,7 +102,13 @@ class Confinement(Case):
         (self.dir / "mine/probe.py").write_text(READS_A_KEY)
         said = self.call("check-plugin", "mine/probe.py:Probe", "--python", "/usr/bin/python3", expect=1)
         self.assertIn("PermissionError", said.stdout)
-        self.assertIn("this is your home directory", said.stderr)
+        self.assertIn("your home directory is this folder", said.stderr)
+        shutil.copytree(self.dir / "mine", self.dir / "above/mine/home")  # a home below the plugin's folder
+        shutil.copytree(FIXTURES / "faulty", self.dir / "above/mine", dirs_exist_ok=True)
+        self.environment["HOME"] = str(self.dir / "above/mine/home")
+        key, notes = (f"{self.dir}/above/mine/home/{name}" for name in (".ssh/id_rsa", "notes.txt"))
+        found = self.probes([f"read+path={key}", f"read+path={notes}"], plugins="above/mine", out="below")
+        self.assertEqual((found["read", key], found["read", notes]), ("EACCES", "reached"))
         self.environment["HOME"] = str(self.dir)
         self.assertNotIn("home", self.call("check-plugin", "mine/probe.py:Probe", "--python", "/usr/bin/python3", expect=1).stderr)
 

@@ -179,6 +179,9 @@ class Keepers(Harm):
         refused = self.call("attribute", "part1", "--plugin-path", "mine_no", expect=2).stderr
         self.assertRegex(refused, r"part1: 1 of its cells have not been played, expected a finished run")
         self.call("merge", "both", "part1", "part2")
+        (self.dir / "file").write_text("")
+        unplaced = self.call("attribute", "both", "--plugin-path", "mine_no", "--out", "file/x", expect=2).stderr
+        self.assertEqual(unplaced, "lgabench: file: cannot be made: file is not a directory\n")
         self.call("attribute", "both", "--plugin-path", "mine_no")
         self.assert_same_results("both-attributed", "whole")
         before = Hostile.bytes_of(self.dir / "both/cells")

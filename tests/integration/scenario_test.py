@@ -52,6 +52,9 @@ class OwnScenario(Case):
         self.new(*NAME, "--near-miss", "--distractors", "2:2")
         checked = self.call("check-scenario", "round.json", "--scenes", "4", "--layout", "continuous").stdout
         self.assertRegex(checked, r"ok +near_miss, continuous .* what shares most in \d; near misses in 4")
+        self.new("usual", *NAME[1:], "--near-miss")
+        arms = {arm["arm"]: arm["distractors"] for arm in json.loads((self.dir / "usual.json").read_text())["tests"]}
+        self.assertEqual(arms, {"test": [1, 2], "near_miss": [4, 4]})
         self.new("anything", "--command", "Bring me anything.", "--types", "ALL", "--near-miss")
         checked = self.call("check-scenario", "anything.json", "--scenes", "4", "--layout", "continuous", expect=1).stdout
         self.assertIn("near_miss: expected a command that leaves out types or textures", checked)

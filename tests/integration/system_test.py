@@ -31,7 +31,10 @@ class Refusing(BesideOneRun):
         self.assertRegex(self.call("merge", "whole", "done", expect=2).stderr, NO_LOCKS)
         self.assertRegex(self.call("select", "Bring me the heart.", "--answers", "openai", "--model", "m", "--cassette", "c.jsonl",
                                    expect=2).stderr, NO_LOCKS)
+        (self.dir / "board").mkdir()
+        self.assertRegex(self.call("leaderboard", "build", "--board", "board", expect=2).stderr, "board/entries: " + NO_LOCKS)
         self.environment["LGABENCH_NO_LOCKS"] = "1"
+        self.call("leaderboard", "build", "--board", "board")
         self.call(*RUN, "--out", "out")
         self.assert_same_results(self.first.dir / "run", "out")
 
@@ -39,6 +42,15 @@ class Refusing(BesideOneRun):
         self.environment["TMPDIR"] = "/not/on/this/node"
         said = self.call("check-plugin", FIXTURES / "good/fixture_constant.so", expect=2).stderr
         self.assertEqual(said, "lgabench: TMPDIR=/not/on/this/node: No such file or directory; set TMPDIR to a directory for temporary files\n")
+
+    def test_a_variable_that_names_no_directory(self):
+        for variable, words in (("LGABENCH_DATA", ("list", "suites")), ("LGABENCH_SCENARIO_PATH", ("list", "scenarios")),
+                                ("LGABENCH_SCENARIO_PATH", ("run", "q1", "--dry-run"))):
+            with self.subTest(variable=variable, words=words):
+                self.environment[variable] = "/not/on/this/node"
+                said = self.call(*words, expect=2).stderr
+                self.assertRegex(said, rf"^lgabench: {variable}[=:] ?/not/on/this/node: No such file or directory\n$")
+                del self.environment[variable]
 
     def test_cores_are_those_of_the_job(self):
         one = {min(os.sched_getaffinity(0))}
@@ -63,6 +75,8 @@ class Refusing(BesideOneRun):
                       ["study", "new", "link/study"]):
             with self.subTest(words=words[0]):
                 self.assertIn("link is a symbolic link to nowhere, which is not there", self.call(*words, expect=2).stderr)
+        self.environment["LGABENCH_CACHE"] = str(self.dir / "link")
+        self.assertIn("link is a symbolic link to nowhere, which is not there; each cell makes its", self.call(*RUN, "--out", "out").stderr)
 
     def test_a_directory_that_is_gone(self):
         gone = self.dir / "gone"

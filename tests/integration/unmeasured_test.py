@@ -185,6 +185,16 @@ class Unplayed(case.BesideOneRun):
         for folder in self.cell_folders("run"):
             self.crash(folder)
         self.assertIn("no cell finished in both", self.call("compare", "run", "b", expect=2).stderr)
+        said = self.call("compare", "run", "--difference", "human,gcbc_seg", expect=3)
+        self.assertIn("not tested", said.stdout)
+        self.assertIn("run: all its 3 cells failed: nothing was measured", said.stderr)
+
+    def test_a_difference_to_a_row_without_a_policy_is_none(self):
+        for folder in self.cell_folders():
+            if json.loads((folder / "cell.json").read_text())["method"]["id"] == "human":
+                self.crash(folder)
+        said = self.call("compare", "run", "--difference", "human,gcbc_seg", expect=3)
+        self.assertIn("run: nothing was compared, the reason stands above", said.stderr)
 
 
 class Empty(case.Case):

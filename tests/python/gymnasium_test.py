@@ -218,6 +218,17 @@ class Gymnasium(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, says):
                 vector.reset(options=options)
 
+    def test_options_of_one_environment_are_its_own(self):
+        env = make("many_hearts", split="test", layout="continuous")
+        for options, says in (({"arm": ["seen"]}, r"^options: expected a split of .* and an arm of .*, got 'test', \['seen'\]$"),
+                              ({"arm": "nope", "split": "train"}, "^options: .*, got 'train', 'nope'$"), ({"split": "tests"}, "got 'tests'"),
+                              ({"index": 1.5}, "^options: index: expected a whole number, got 1.5$"),
+                              ({"index": [0, 1]}, r"^options: index: .*, got \[0, 1\]$"), ({"scene_seed": "1"}, "scene_seed: .*, got '1'$")):
+            with self.assertRaisesRegex(ValueError, says):
+                env.reset(options=options)
+        vector = make_vec("many_hearts", 2, split="test", layout="continuous")
+        self.assertEqual(list(vector.reset(seed=numpy.int64(3))[1]["scene"]), [env.reset(seed=seed)[1]["scene"] for seed in (3, 4)])
+
     def test_a_scenario_of_ones_own(self):
         path = pathlib.Path(registration._core.data_directory()) / "scenarios/heart.json"
         own = gymnasium.make("lgabench/own-v1", path=path, engine=ENGINE, layout="cells", split="test")

@@ -26,6 +26,8 @@ TEST(FinalAnswer, IsReadFromTheEndingsThatModelsWrite) {
                           "\\[ \\text{Final answer: yes} \\]",
                           "Final answer: yes\nLet me know if you want another command judged!",
                           "Reason.\nFinal answer: yes\n\nPlease do not hesitate to ask more.",
+                          "Final answer: yes. Please do not hesitate to ask more.",
+                          "Final answer: yes! If you have no further questions, I am done.",
                           "Final answer: yes\nNot sure? Ask me.",
                           "**Final answer:** yes\n\nIf you have no further questions, I am done.",
                           "[THINK]Final answer: no[/THINK]Final answer: yes",
@@ -87,6 +89,9 @@ TEST(FinalAnswer, IsNoneWhereAReplySaysNothingOrBoth) {
                            "<think>Final answer: yes",
                            "<think>no</think><think>Final answer: yes",
                            "Final answer: yes unless it is red",
+                           "Final answer: yes. But only the red one.",
+                           "Final answer: yes. However, not the red one.",
+                           "Final answer: no. Yes, if it is red.",
                            "Answer: no",
                            "Final: no",
                            "Antwort: nein"})
@@ -111,13 +116,16 @@ TEST(FinalAnswer, CutsNoCharacterOfAReplyThatItShows) {
 
 TEST(FinalAnswer, NamesMarks) {
   using Marks = std::vector<int>;
-  for (const char* two : {"Final answer: 2, 5", "**Final answer:** 5 and 2.", "final answer is marks 2 and 5",
-                          "Final answer:\n2, 5", "<think>Final answer: 3</think>\nFinal answer: 2, 5, 2",
-                          "I end with \"Final answer: 1\".\nFinal answer: 2, 5\nThat is all."})
+  for (const char* two :
+       {"Final answer: 2, 5", "**Final answer:** 5 and 2.", "final answer is marks 2 and 5", "Final answer:\n2, 5",
+        "<think>Final answer: 3</think>\nFinal answer: 2, 5, 2", "Final answer: 2 and 5 (the heart and the star)",
+        "Final answer: 2, 5. Please ask more.", "I end with \"Final answer: 1\".\nFinal answer: 2, 5\nThat is all."})
     EXPECT_EQ(final_marks(two, 5), (Marks{2, 5})) << two;
   EXPECT_EQ(final_marks("Final answer: none.", 5), Marks());
-  for (const char* no : {"", "2, 5", "Final answer:", "Final answer: 2 or 5", "Final answer: none, 2",
-                         "Final answer: the heart", "<think>Final answer: 2", "Final answer: 2\nFinal answer: unclear"})
+  for (const char* no :
+       {"", "2, 5", "Final answer:", "Final answer: 2 or 5", "Final answer: none, 2", "Final answer: the heart",
+        "Final answer: 2 (the heart) and 5", "Final answer: 2, but 5", "Final answer: 2 if red",
+        "Final answer: none of 3", "<think>Final answer: 2", "Final answer: 2\nFinal answer: unclear"})
     EXPECT_THROW(final_marks(no, 5), MethodError) << no;
   const auto said = [](const char* reply) { return message_of<MethodError>([&] { final_marks(reply, 5); }); };
   EXPECT_SAYS(said("Final answer: 2, 6"), "there is no mark 6, there are 1 to 5");

@@ -290,6 +290,13 @@ TEST_F(Chat, AnAddressThatIsNoneIsSaidAtOnce) {
     options.waiting = [](const std::string& why) { ADD_FAILURE() << why; };
     EXPECT_THROW(ask(&options, {"m", 1, -1, {}}), MethodError);
   }
+  Server plain(always(200, "{}"));
+  OpenAiOptions options = plain.options();
+  options.base_url.replace(0, 4, "https");
+  options.waiting = [](const std::string& why) { ADD_FAILURE() << why; };
+  EXPECT_SAYS(message_of<MethodError>([&] { ask(&options, {"m", 1, -1, {}}); }), "no server at https://");
+  options.ca_file = "/nonexistent";
+  EXPECT_SAYS(message_of<MethodError>([&] { ask(&options, {"m", 1, -1, {}}); }), "TLS: ");
 }
 
 // Who answers: another from the n-th request on.

@@ -261,8 +261,9 @@ template <class Ask>
 auto ChatLanguageModel::read_or_empty(Ask&& ask) const -> decltype(ask()) {
   try {
     return ask();
-  } catch (const Unread&) {
+  } catch (const Unread& e) {
     if (options_.expects_read) throw;
+    if (options_.waiting) options_.waiting(fmt::format("{}: nothing is selected", e.what()));
     return {};
   }
 }

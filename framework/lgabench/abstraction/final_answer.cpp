@@ -19,13 +19,13 @@ namespace {
 
 struct Word {
   std::string text;
-  int line = 0;
+  int line = 0, sentence = 0;  // a line that ends also ends its sentence
 };
 
 // In lower case; letters and digits make words, all else parts them. Tags and LaTeX's commands are left out.
 std::vector<Word> words_of(const std::string& text) {
   std::vector<Word> words;
-  int line = 0;
+  int line = 0, sentence = 0;
   bool parted = true, command = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     constexpr std::size_t longest_tag = 20;
@@ -34,12 +34,13 @@ std::vector<Word> words_of(const std::string& text) {
     const auto byte = static_cast<unsigned char>(c);
     if (std::isalnum(byte) == 0) {
       line += c == '\n';
+      sentence += c == '\n' || c == '.' || c == '!' || c == '?';
       command = c == '\\';
       parted = true;
       continue;
     }
     if (command) continue;
-    if (parted) words.push_back({"", line});
+    if (parted) words.push_back({"", line, sentence});
     words.back().text += static_cast<char>(std::tolower(byte));
     parted = false;
   }
@@ -70,9 +71,10 @@ bool is_condition(const std::string& word) {
   return contains(conditions, word);
 }
 
-// A line after the answer that begins with such a word speaks of the answer; any other may be a pleasantry.
+// A sentence after the answer that begins with such a word speaks of the answer; any other may be a pleasantry.
 bool comes_back_to_it(const std::string& word) {
-  constexpr std::array first_words{"yes", "no", "or", "wait", "actually", "rather", "correction", "sorry", "hmm"};
+  constexpr std::array first_words{"yes",    "no",         "or",    "but", "unless", "wait",   "actually",
+                                   "rather", "correction", "sorry", "hmm", "though", "however"};
   return contains(first_words, word);
 }
 
@@ -95,29 +97,38 @@ std::optional<bool> answer_in(const std::string& reply) {
   };
   if (std::any_of(statements.begin(), statements.end(), contradicts))
     throw MethodError("language model: expected one final answer, got a reply with both \"yes\" and \"no\"");
-  int line = words[last.end - 1].line;
+  const Word& answered = words[last.end - 1];
+  int before = answered.sentence;
   bool counts = true;
   for (std::size_t i = last.end; i < words.size(); ++i) {
-    const auto& [word, at] = words[i];
-    if (at != line) counts = comes_back_to_it(word);
-    line = at;
+    const auto& [word, line, sentence] = words[i];
+    if (sentence != before) counts = comes_back_to_it(word);
+    before = sentence;
     if (!counts) continue;
     if (word == (*last.answer ? "no" : "yes") || (*last.answer && word == "not")) return std::nullopt;
-    if (at == words[last.end - 1].line && is_condition(word)) return std::nullopt;
+    if (line == answered.line && is_condition(word)) return std::nullopt;
   }
   return last.answer;
 }
 
-// The marks that a line says after "final answer", from word `at` on; none where it says something else.
+// The marks that a line says after "final answer", from word `at` on; none where it says something else. Words after
+// them ("1 (the heart)") are a remark, unless a number or a condition is among them.
 std::optional<std::set<int>> marks_at(const std::vector<Word>& words, std::size_t at, int most) {
   std::set<int> marks;
-  bool none = false;
+  bool none = false, remarks = false;
   for (const std::size_t first = at; at < words.size() && words[at].line == words[first].line; ++at) {
     const std::string& word = words[at].text;
+    const bool is_number = word.size() <= 3 && word.find_first_not_of("0123456789") == std::string::npos;
     if (word == "and" || word == "mark" || word == "marks") continue;
+    if (!is_number && word != "none" && (none || !marks.empty())) {
+      if (is_condition(word) || word == "not") return std::nullopt;
+      remarks = true;
+      continue;
+    }
+    if (remarks) return std::nullopt;
     none = none || word == "none";
     if (word == "none") continue;
-    if (word.size() > 3 || word.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
+    if (!is_number) return std::nullopt;
     const int mark = std::stoi(word);
     if (mark < 1 || mark > most)
       throw MethodError(fmt::format("language model: there is no mark {}, there are 1 to {}", word, most));

@@ -91,14 +91,18 @@ Response post(CURL* handle, const OpenAiOptions& options, const std::string& bod
   if (code != CURLE_OK) {
     const bool untrusted = code == CURLE_PEER_FAILED_VERIFICATION, too_long = code == CURLE_WRITE_ERROR;
     const bool no_address = code == CURLE_UNSUPPORTED_PROTOCOL || code == CURLE_URL_MALFORMAT;
-    response.final = untrusted || too_long || no_address;
+    long tunnel = 0;  // what a proxy said to CONNECT
+    curl_easy_getinfo(handle, CURLINFO_HTTP_CONNECTCODE, &tunnel);
+    const bool shut_out = tunnel >= 400 && tunnel < 500 && tunnel != 408 && tunnel != 429;
+    response.final = untrusted || too_long || no_address || shut_out || code == CURLE_SSL_CACERT_BADFILE;
     long sent = 0;
     curl_easy_getinfo(handle, CURLINFO_REQUEST_SIZE, &sent);
     response.late = code == CURLE_OPERATION_TIMEDOUT && sent > 0;
     const bool tls = untrusted || code == CURLE_SSL_CONNECT_ERROR || code == CURLE_SSL_CACERT_BADFILE;
     long error = 0;
     curl_easy_getinfo(handle, CURLINFO_OS_ERRNO, &error);
-    response.absent = (code == CURLE_COULDNT_CONNECT && error == ECONNREFUSED) || code == CURLE_COULDNT_RESOLVE_HOST;
+    response.absent = (code == CURLE_COULDNT_CONNECT && error == ECONNREFUSED) || code == CURLE_COULDNT_RESOLVE_HOST ||
+                      code == CURLE_COULDNT_RESOLVE_PROXY || code == CURLE_SSL_CONNECT_ERROR;
     response.problem = too_long ? fmt::format("a reply of more than {} bytes", OpenAiClient::most_bytes)
                                 : (tls ? "TLS: " : "") + std::string(*problem ? problem : curl_easy_strerror(code));
     if (!proxy.empty()) response.problem += fmt::format(", through the proxy {}", provider({proxy, ""}));
@@ -174,8 +178,8 @@ ChatReply OpenAiClient::complete(const Json& request) {
     const auto [next, why] = verdict_of(response, options_.api_key);
     if (next == Verdict::Next::read) {
       try {
-        ChatReply reply = read_completion(without_key(response.body, options_.api_key));
-        reply.text = without_key(std::move(reply.text), options_.api_key);
+        ChatReply reply = read_completion(response.body);
+        for (std::string* said : {&reply.text, &reply.served}) *said = without_key(std::move(*said), options_.api_key);
         reply.seconds = std::chrono::duration<double>(Clock::now() - start).count();
         reply.day = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
         connections_->is_new("");

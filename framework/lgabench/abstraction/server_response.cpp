@@ -98,7 +98,10 @@ long status_in(const Json& error) {
 
 std::string without_key(std::string text, const std::string& key) {
   constexpr std::string_view instead = "(key)";
-  for (std::size_t at = 0; !key.empty() && (at = text.find(key, at)) != std::string::npos; at += instead.size())
+  constexpr std::size_t shortest =
+      8;  // a shorter one is a placeholder, such as "none", and may be any word of the text
+  for (std::size_t at = 0; key.size() >= shortest && (at = text.find(key, at)) != std::string::npos;
+       at += instead.size())
     text.replace(at, key.size(), instead);
   return text;
 }

@@ -49,8 +49,13 @@ std::vector<fs::path> scenario_path() {
   std::vector<fs::path> directories;
   const char* listed = std::getenv(variable);
   std::istringstream words(listed ? listed : "");
-  for (std::string word; std::getline(words, word, ':');)
-    if (!word.empty()) directories.emplace_back(word);
+  for (std::string word; std::getline(words, word, ':');) {
+    if (word.empty()) continue;
+    std::error_code error;
+    if (!fs::is_directory(word, error))
+      throw InputError(fmt::format("{}: {}: {}", variable, word, error ? error.message() : "not a directory"));
+    directories.emplace_back(word);
+  }
   return directories;
 }
 

@@ -123,19 +123,23 @@ void expect_arms(const PlayedArms& played, const SuiteArms& there, const Suite& 
   }
 }
 
-// What a policy is trained on; policy=point is not trained.
+// What a policy is trained on; policy=point is not trained, nor is a method without the framework's epochs.
 void expect_demonstrations(const Design& design, const std::vector<Competitor>& methods, const Catalogue& catalogue) {
   if (!contains(design.demonstrations, 0)) return;
   for (const Competitor& method : methods) {
     const Json& options = catalogue.find("method", method.acts ? method.acts->id : method.id).options;
-    if (!options.contains("policy") || !options["policy"].value("framework", false)) continue;
-    const Json policy =
-        (method.acts ? method.acts->options : method.options).value("policy", options["policy"]["default"]);
-    if (policy != "point")
-      throw InputError(
-          fmt::format("demonstrations: expected 1 or more for {}, whose policy ({}) is trained on them, "
-                      "got 0; policy=point needs none",
-                      method.name, policy.get<std::string>()));
+    const auto is_frameworks = [&options](const char* name) {
+      return options.contains(name) && options[name].value("framework", false);
+    };
+    if (!is_frameworks("epochs")) continue;
+    const bool has_policies = is_frameworks("policy");
+    const Json policy = (method.acts ? method.acts->options : method.options)
+                            .value("policy", has_policies ? options["policy"]["default"] : Json());
+    if (policy == "point") continue;
+    const bool may_point = has_policies && contains(options["policy"].value("values", Json::array()), Json("point"));
+    throw InputError(fmt::format(
+        "demonstrations: expected 1 or more for {}, whose policy{} is trained on them, got 0{}", method.name,
+        has_policies ? " (" + policy.get<std::string>() + ")" : "", may_point ? "; policy=point needs none" : ""));
   }
 }
 

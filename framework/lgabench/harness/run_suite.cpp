@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <random>
 #include <set>
 
 #include <lgabench/core/colour.hpp>
+#include <lgabench/core/directories.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -116,11 +118,10 @@ void warn_of_disks(const RunPlan& plan, double run_bytes) {
   if (!error && static_cast<double>(space.available) < run_bytes)
     to_stderr("{}: the cells need about {} of disk, and {} are free\n", plan.out.string(), size_text(run_bytes),
               size_text(static_cast<double>(space.available)));
-  fs::create_directories(plan.cache, error);
-  if (!error && ::access(plan.cache.c_str(), W_OK) != 0) error = std::error_code(errno, std::generic_category());
-  if (error)
-    to_stderr("{}: cannot be written: {}; each cell makes its demonstrations again\n", plan.cache.string(),
-              error.message());
+  std::string why = try_make_directories(plan.cache);
+  if (why.empty() && ::access(plan.cache.c_str(), W_OK) != 0) why = std::strerror(errno);
+  if (!why.empty())
+    to_stderr("{}: cannot be written: {}; each cell makes its demonstrations again\n", plan.cache.string(), why);
 }
 
 // The cells that a run lacks, from the plan to the directory.

@@ -276,17 +276,17 @@ Limits worker_limits(const PoolOptions& options) {
 
 WorkerFault why_it_ended(const WorkerEnd& end, double timeout_s) {
   const std::string where = end.phase.empty() ? "before its first phase" : "in phase " + end.phase;
-  const std::string awaited = end.waits_for.empty() ? "" : fmt::format(": {} did not answer", end.waits_for);
+  // Methods, perturbations and perceivers have processes of their own.
+  const char* const itself = " of the worker itself, in which engine and environment run";
+  const std::string awaited = end.waits_for.empty() ? itself : fmt::format(": {} did not answer", end.waits_for);
   if (end.timed_out) return {fmt::format("stopped after {} s {}{}", timeout_s, where, awaited), "plugin"};
   if (end.signal != 0) {
     const bool outside = end.signal == SIGKILL || end.signal == SIGTERM;  // a person, or memory ran out
-    // Methods, perturbations and perceivers have processes of their own.
-    return {fmt::format("signal {} ({}) {}{}", end.signal, ::strsignal(end.signal), where,
-                        outside ? "" : " of the worker itself, in which the engine runs"),
+    return {fmt::format("signal {} ({}) {}{}", end.signal, ::strsignal(end.signal), where, outside ? "" : itself),
             outside ? "host" : "plugin"};
   }
   if (end.complaint) return {end.complaint->reason, end.complaint->by_plugin ? "plugin" : "host"};
-  return {fmt::format("exited with {} {}", end.exit_code, where), "plugin"};
+  return {fmt::format("exited with {} {}{}", end.exit_code, where, itself), "plugin"};
 }
 
 std::vector<std::string> log_tail(const fs::path& log) {

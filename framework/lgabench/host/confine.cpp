@@ -15,6 +15,7 @@
 #include <iterator>
 
 #include <lgabench/core/error.hpp>
+#include <lgabench/host/reach.hpp>
 #include <lgabench/host/system_calls.hpp>
 
 namespace lgabench {
@@ -148,10 +149,12 @@ Confinement::Confinement(const Reach& reach) : network_(reach.network) {
   for (const fs::path& path : reach.folders) {
     const fs::path real = fs::canonical(path, not_there);
     if (not_there) continue;
-    std::vector<fs::path> unread_here = unread;
+    std::vector<fs::path> unread_here = unread, with_own{real};  // folders whose dotfiles are a person's own
+    if (const auto home = home_in(real); home && *home != real) with_own.push_back(*home);
     std::error_code unreadable;
-    for (const auto& entry : fs::directory_iterator(real, unreadable))
-      if (entry.path().filename().string().front() == '.') unread_here.push_back(entry.path());
+    for (const fs::path& folder : with_own)
+      for (const auto& entry : fs::directory_iterator(folder, unreadable))
+        if (entry.path().filename().string().front() == '.') unread_here.push_back(entry.path());
     rules.add_visible(real, hidden, unread_here);
   }
   for (const fs::path& path : reach.writes) rules.add(path, ~devices_and_sockets);

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <set>
 
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/descriptor.hpp>
@@ -243,8 +244,13 @@ Catalogue plugins_at(const std::vector<fs::path>& paths, const std::string& inte
   const auto is_python = [](const fs::path& path) { return is_python_method(path.string()); };
   const std::vector<fs::path> directories = plugin_directories(paths);
   Catalogue catalogue = scan_plugins(directories);
-  for (const fs::path& one : paths)
-    if (!is_python(one)) warn_of_home(fs::is_directory(one) ? one : fs::absolute(one).parent_path());
+  std::set<fs::path> folders;  // each once, also where an option and the variable name it
+  std::error_code unreachable;
+  for (const fs::path& one : directories)
+    if (const fs::path folder = fs::is_directory(one, unreachable) ? one : fs::absolute(one).parent_path();
+        !is_python(one))
+      folders.insert(fs::weakly_canonical(folder, unreachable));
+  for (const fs::path& folder : folders) warn_of_home(folder);
   for (const fs::path& directory : directories)
     if (is_site_packages(directory)) add_installed_methods(directory, interpreter, catalogue);
   const auto add = [&](const fs::path& path) {

@@ -1,5 +1,6 @@
 #include <lgabench/host/reach.hpp>
 
+#include <algorithm>
 #include <cstdlib>
 #include <string>
 
@@ -20,15 +21,21 @@ Reach system_reach() {
 
 fs::path python_package() { return fs::canonical(data_directory() / "python"); }
 
+std::optional<fs::path> home_in(const fs::path& folder) {
+  const char* named = std::getenv("HOME");
+  std::error_code home_gone, folder_gone;
+  const fs::path home = fs::canonical(named ? named : "", home_gone), outer = fs::canonical(folder, folder_gone);
+  if (home_gone || folder_gone) return std::nullopt;
+  const bool is_in = std::mismatch(outer.begin(), outer.end(), home.begin(), home.end()).first == outer.end();
+  return is_in ? std::optional(home) : std::nullopt;
+}
+
 void warn_of_home(const fs::path& folder) {
-  const char* home = std::getenv("HOME");
-  std::error_code not_there;
-  if (home == nullptr || !fs::equivalent(folder, home, not_there)) return;
-  to_stderr(
-      "{}: this is your home directory: a plugin in it can read all that lies there and has no dot before its name; "
-      "put "
-      "it in a folder of its own (docs/trust.md)\n",
-      folder.string());
+  if (const std::optional<fs::path> home = home_in(folder))
+    to_stderr(
+        "{}: your home directory {}: a plugin there can read all in it that has no dot before its name; put the plugin "
+        "in a folder of its own (docs/trust.md)\n",
+        folder.string(), fs::equivalent(folder, *home) ? "is this folder" : "lies below it");
 }
 
 void add_python(Reach& reach, const Json& python) {

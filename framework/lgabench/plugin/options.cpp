@@ -2,6 +2,8 @@
 #include <fmt/ranges.h>
 
 #include <cctype>
+#include <cmath>
+#include <limits>
 
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/suggest.hpp>
@@ -88,6 +90,9 @@ Json check_options(const PluginInfo& plugin, const JsonReader& given) {
     }
     if (value.is_number() && !within(option, value.get<double>()))
       given.at(name).fail(fmt::format("{} {}", type_of(usual), range_text(option)));
+    constexpr double most = std::numeric_limits<int>::max();  // which is how methods read them
+    if (value.is_number_integer() && std::abs(value.get<double>()) > most)
+      given.at(name).fail(fmt::format("{} of at most {:.0f}", type_of(usual), most));
     resolved[name] = std::move(value);
   }
   return resolved;

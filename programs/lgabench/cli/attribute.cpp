@@ -9,6 +9,7 @@
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/contains.hpp>
+#include <lgabench/core/directories.hpp>
 #include <lgabench/core/terminal.hpp>
 
 namespace lgabench::cli {
@@ -46,6 +47,7 @@ int attribute(AttributeArguments a) {
   if (a.out.empty())
     a.out = fs::path(fs::absolute(a.run / "").lexically_normal().parent_path().string() + "-attributed");
   if (fs::exists(fs::symlink_status(a.out))) throw InputError(a.out.string() + ": exists already");
+  if (a.out.has_parent_path()) make_directories(a.out.parent_path());
   const std::vector<Recorded> cells = wanted_cells(a, record);
   if (cells.empty()) throw InputError(a.run.string() + ": every failure that can be attributed has its cause");
   RunPlan plan = plan_again(a.run, record, {cells.front().cell}, a.jobs, a.timeout_s);

@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <condition_variable>
 #include <ctime>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <thread>
 
@@ -14,6 +17,7 @@
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/core/descriptor.hpp>
 #include <lgabench/core/environments.hpp>
+#include <lgabench/core/refused.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -22,6 +26,7 @@
 #include <lgabench/harness/suite.hpp>
 #include <lgabench/host/python_environment.hpp>
 #include <lgabench/host/python_method.hpp>
+#include <lgabench/host/reach.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench::cli {
@@ -32,7 +37,37 @@ struct BenchArguments {
   std::vector<std::string> settings;
   std::vector<fs::path> plugin_path;
   int demonstrations = 10, repetitions = 9;
+  double timeout_s = 600, memory_gib = 0;
   bool json = false;
+};
+
+// Ends this process, and with it the method's, where a use takes longer than it may.
+class Watch {
+ public:
+  Watch(const std::string& who, double seconds) {
+    thread_ = start_thread([this, who, seconds] {
+      std::unique_lock lock(mutex_);
+      if (over_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return is_over_; })) return;
+      to_stderr("lgabench: {}: its use took longer than {:g} s (--timeout): nothing was measured\n", who, seconds);
+      ::_exit(cells_failed);
+    });
+  }
+  ~Watch() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_over_ = true;
+    }
+    over_.notify_one();
+    thread_.join();
+  }
+  Watch(const Watch&) = delete;
+  Watch& operator=(const Watch&) = delete;
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable over_;
+  bool is_over_ = false;
+  std::thread thread_;
 };
 
 // A method, and what was measured of it.
@@ -52,6 +87,7 @@ PluginInfo plugin_of(const std::string& word, const Catalogue& catalogue, const 
   const PluginInfo plugin = is_python    ? describe_python(word, python)
                             : is_library ? read_plugin(word)
                                          : catalogue.find("method", word);
+  if (is_library) warn_of_home(fs::absolute(plugin.file).parent_path());
   if (plugin.kind != "method")
     throw InputError(fmt::format("{}: expected a method, got a plugin of kind {}", word, plugin.kind));
   return plugin;
@@ -119,7 +155,7 @@ Json benchmark_json(const std::array<Measured, 2>& both, const BenchArguments& a
                {{"date", fmt::format("{:%Y-%m-%dT%H:%M:%S+00:00}", fmt::gmtime(std::time(nullptr)))},
                 {"host_name", host},
                 {"executable", "lgabench bench"},
-                {"num_cpus", std::thread::hardware_concurrency()},
+                {"num_cpus", usable_cores()},
                 {"lgabench", LGABENCH_VERSION},
                 {"scenario", scenario.id},
                 {"demonstrations", a.demonstrations},
@@ -165,13 +201,17 @@ void bench(const BenchArguments& a) {
   const std::string engine = a.engine.empty() ? default_engine(catalogue, type) : a.engine;
   Bench played(scenario, catalogue.engine(engine, type));
   const Descriptor out{::dup(1)};
+  if (out.fd < 0) throw Refused("standard output");
   ::dup2(2, 1);  // what the methods print
   CountedProgress progress("uses measured:", 2 * a.repetitions);
+  progress.say(fmt::format("measuring {} and {}, each {} times", both[0].name, both[1].name, a.repetitions));
   for (int k = 0; k < a.repetitions; ++k)
     for (std::size_t turn = 0; turn < both.size(); ++turn) {
       Measured& measured = both[(turn + static_cast<std::size_t>(k)) % both.size()];  // neither is always the first
       const Scratch scratch("bench");
       HostJob job{measured.plugin, type.id(), measured.options, 0, scratch.path};
+      job.memory_bytes = static_cast<long long>(plugin_memory_gib(a.memory_gib) * (1 << 30));
+      const Watch watch(measured.name, a.timeout_s);
       measured.uses.push_back(time_of_use(job, played, a.demonstrations));
       progress.tell_next();
     }
@@ -198,6 +238,7 @@ void add_bench(CLI::App& app, int&) {
   verb.option("--demos N", a->demonstrations, "Demonstrations of each command", CLI::Range(1, 1000), with_default);
   verb.option("--repetitions N", a->repetitions, "Uses of each method", CLI::Range(1, 1000), with_default);
   verb.option("--engine ENGINE", a->engine, "An engine, by plugin id (default: the one that suites use)");
+  add_plugin_limits(verb, a->timeout_s, a->memory_gib, "each use");
   verb.option("--json", a->json, "Print what Google Benchmark would write, for its compare.py");
   add_plugin_path(verb, a->plugin_path, any_plugin);
   add_python(verb, a->python);

@@ -17,7 +17,6 @@
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/perturbations.hpp>
-#include <lgabench/core/resources.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -81,12 +80,6 @@ class Watching {
   bool is_told_ = false;
   std::size_t printed_ = 0;
 };
-
-// A plugin that takes all memory must not take the whole machine's.
-double check_memory_gib(double asked) {
-  constexpr double gib = 1 << 30, usual = 4;
-  return asked > 0 ? asked : std::min(usual, usable_bytes() / gib / 2);
-}
 
 // How it was compiled, where that may change results.
 void note_compilation(const PluginInfo& plugin, CheckReport& report) {
@@ -187,7 +180,7 @@ std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
   judge_name(plugin, report);
 
   const Scratch scratch("check");
-  const PoolOptions pool{1, a.timeout_s, check_memory_gib(a.memory_gib)};
+  const PoolOptions pool{1, a.timeout_s, plugin_memory_gib(a.memory_gib)};
   const std::optional<PluginInfo> engine = engine_for(plugin, catalogue, a.environment);
   std::array<CheckProcess, 2> both = two_processes(plugin, engine, a, pool, scratch.path);
   const auto make = [&](std::size_t i) {
@@ -268,11 +261,7 @@ void add_check_plugin(CLI::App& app, int& exit) {
               "A scenario, by id, that a method is checked on alone: one of several steps, such as errands_fruit")
       ->excludes("--environment");
   add_scenario_path(verb);
-  verb.option("--timeout SECONDS", a->timeout_s, "Time limit of each of the two processes, in seconds", within(1, 1e6),
-              with_default);
-  verb.option("--memory GIB", a->memory_gib,
-              "Memory limit of each, in GiB (default: 4, or half of the job's memory where that is less)",
-              within(.1, 1e6));
+  add_plugin_limits(verb, a->timeout_s, a->memory_gib, "each of the two processes");
   verb.option("--json", a->json, "Print one JSON object");
   verb->footer(
       "Two fresh processes use the plugin as cells do, with the same seed. Exit 1 if there is a problem.\nWithout "

@@ -142,8 +142,8 @@ std::string submit_script(const fs::path& out, int elements) {
       "  echo \"sbatch was not found: call this script where Slurm is. Without Slurm, GNU parallel can play the "
       "elements,"
       " one after another here or with -S on other machines:\" >&2\n"
-      "  echo \"  seq {1} | parallel -j1 SLURM_ARRAY_TASK_ID={{}} bash \" {0}/array.sbatch >&2\n"
-      "  echo \"  bash \" {0}/merge.sbatch >&2\n"
+      "  printf '  seq {1} | parallel -j1 SLURM_ARRAY_TASK_ID={{}} bash %q\\n  bash %q\\n' {0}/array.sbatch "
+      "{0}/merge.sbatch >&2\n"
       "  exit 127\nfi\n"
       "array=$(sbatch --parsable \"$@\" {0}/array.sbatch)\n"
       "sbatch --dependency=\"afterany:${{array%%;*}}\" {0}/merge.sbatch\n",

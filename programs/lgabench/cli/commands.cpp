@@ -11,6 +11,7 @@ const char* const reference =
     "  LGABENCH_SCENARIO_PATH    directories of more scenarios, separated by colons\n"
     "  LGABENCH_DATA             scenarios, suites and answers to use instead of the installed ones\n"
     "  LGABENCH_ENCODER          the folder of the sentence encoder's weights\n"
+    "  LGABENCH_PYTHON           the interpreter for plugins in Python\n"
     "  LGABENCH_NO_LOCKS         1: to work on file systems without locks, where nothing else writes\n"
     "  OPENAI_BASE_URL, OPENAI_API_KEY\n"
     "                            the server that `--answers openai` asks\n"

@@ -203,7 +203,7 @@ int supersede(const LeaderboardArguments& a) {
   for (const std::string& entry : done.entries) to_stdout("superseded {}\n", entry);
   if (!done.entries.empty())
     to_stderr("Next, for each: lgabench leaderboard verify ENTRY --by NAME; vouch; scenes; then build --board {}\n",
-              a.board.string());
+              shell_line({a.board.string()}));
   return ok;
 }
 
@@ -233,7 +233,8 @@ int vouch(const LeaderboardArguments& a) {
   return ok;
 }
 
-// How far reading and computing are, on stderr: one line on a terminal, else a line every half minute.
+// How far reading and computing are, on stderr: one line on a terminal, else a line after five seconds and every half
+// minute.
 class Steps {
  public:
   Steps() = default;
@@ -246,8 +247,9 @@ class Steps {
   leaderboard::OnProgress on_progress() {
     return [this](const char* what, std::size_t done, std::size_t of, const char* things) {
       const auto now = Clock::now();
-      if (!terminal_ && now - told_ < std::chrono::seconds(30)) return;
+      if (!terminal_ && now - told_ < pause_) return;
       told_ = now;
+      pause_ = std::chrono::seconds(30);
       put(stderr, fmt::format("{}{} {} of {} {}{}", terminal_ ? "\r\x1b[K" : "", what, done, of, things,
                               terminal_ ? "" : "\n"));
     };
@@ -257,6 +259,7 @@ class Steps {
   using Clock = std::chrono::steady_clock;
   bool terminal_ = is_terminal(stderr);
   Clock::time_point told_ = Clock::now();
+  std::chrono::seconds pause_{5};
 };
 
 int check(const LeaderboardArguments& a) {

@@ -65,6 +65,11 @@ std::string class_name(const std::string& name) {
 const std::array<std::string, 10> cmake_targets{"all",     "clean",          "edit_cache", "help",          "install",
                                                 "package", "package_source", "preinstall", "rebuild_cache", "test"};
 
+// Modules that a plugin in Python imports, or that these import: a file of such a name would be found in their place.
+const std::array<std::string, 14> python_modules{
+    "array",           "collections", "dataclasses", "enum",   "json", "lgabench", "lgabench_environment",
+    "lgabench_method", "math",        "numpy",       "random", "time", "torch",    "typing"};
+
 // Another thing of that name would be found in place of the plugin, or refuse it.
 void expect_free(const NewPluginArguments& a) {
   const std::string kind = a.kind == "python" ? "method" : a.kind;
@@ -88,6 +93,9 @@ void expect_free(const NewPluginArguments& a) {
                                  kind == "perturbation" ? "perturbation axis" : kind));
   if (contains(cmake_targets, a.name))
     throw InputError(fmt::format("new-plugin: expected another id than {}, which CMake has a target of", a.name));
+  if ((a.language == "python" || a.kind == "python") && contains(python_modules, a.name))
+    throw InputError(
+        fmt::format("new-plugin: expected another id than {}, which is a module's that plugins use", a.name));
 }
 
 void new_plugin(const NewPluginArguments& a) {

@@ -12,8 +12,7 @@ using Words = std::vector<std::string>;
 
 /// A scenario of the environment that has the task; texts are as on the command line.
 struct NewScenario {
-  std::string name, task = "pick_and_place", space /* "": the environment's usual one */, distractors = "1:2",
-                    near_miss_distractors;
+  std::string name, task = "pick_and_place", space /* "": the environment's usual one */, distractors = "1:2";
   Words commands, unseen, types, textures{"ALL"}, other_types, other_textures{"ALL"};
   Words also, careless, undecided, order;  // all but the last: sets
   std::string rule, of, words;

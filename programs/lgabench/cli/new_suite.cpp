@@ -105,6 +105,9 @@ Json claims_json() {
 void new_suite(NewSuiteArguments a) {
   expect_plain_name("new-suite", a.scenario.name);
   expect_free_suite("new-suite", a.scenario.name);
+  for (const auto& [option, text] : {std::pair("--title", &a.title), std::pair("--question", &a.question)})
+    if (one_line(*text) != *text)
+      throw InputError(fmt::format("{}: expected one line of text in UTF-8, got \"{}\"", option, one_line(*text)));
   const fs::path directory = a.directory.empty() ? fs::path(a.scenario.name) : a.directory;
   const std::string name = a.scenario.name, file = name + ".json";
   if (std::error_code error; fs::exists(directory, error))
@@ -115,11 +118,9 @@ void new_suite(NewSuiteArguments a) {
   for (const std::string& id : a.scenarios) scenarios.push_back(load_scenario(id));
   if (scenarios.empty() || !a.scenario.commands.empty()) {
     a.scenario.name += "_1";
+    expect_plain_name("new-suite", a.scenario.name);
     expect_free_scenario("new-suite", a.scenario.name);
     const std::string scenario_file = a.scenario.name + ".json";
-    // As in the shipped suites: with fewer any object is right too often. Only these scenes have room for them.
-    if (a.scenario.task == "pick_and_place" && a.scenario.distractors == NewScenario().distractors)
-      a.scenario.near_miss_distractors = "4:4";
     const Json json = files[scenario_file] = new_scenario_json(a.scenario, "new-suite", scenario_file);
     scenarios.push_back(read_scenario(json, scenario_file));
     a.scenario.name = name;
@@ -132,8 +133,10 @@ void new_suite(NewSuiteArguments a) {
   if (a.question.empty()) a.question = "How much does a policy gain that sees only what the command means?";
   files[file] = suite_json(a, scenarios, answered);
   files[fs::path("claims") / file] = claims_json();
-  for (const auto& [to, json] : files) {
-    write_file(directory / to, json.dump(1) + "\n");
+  std::map<fs::path, std::string> texts;  // all of them before the first is written
+  for (const auto& [to, json] : files) texts[to] = json.dump(1) + "\n";
+  for (const auto& [to, text] : texts) {
+    write_file(directory / to, text);
     to_stdout("{}\n", (directory / to).string());
   }
   load_suite((directory / file).string());  // the reader of runs judges what was written

@@ -107,11 +107,16 @@ int print_difference(const statistics::RunResults& run, const std::vector<std::s
     to_stdout("{}\n", statistics::to_json(run.suite, claims).dump(2));
   else
     print_claims_section(claims, "Two rows, paired");
-  return verdict_of(run, claims);
+  const int exit = verdict_of(run, claims);
+  const bool tested = std::any_of(claims.begin(), claims.end(),
+                                  [](const auto& c) { return c.verdict != statistics::Verdict::not_tested; });
+  if (tested || exit != ok) return exit;
+  to_stderr("{}: nothing was compared, the reason stands above\n", run.directory.string());
+  return cells_failed;
 }
 
 void print_report(const fs::path& run, Printed what) {
-  constexpr std::size_t many = 300;  // cells: some seconds
+  constexpr std::size_t many = 100;  // cells: some seconds
   if (const std::size_t cells = read_run_record(run).cells.size(); cells > many && what != Printed::table)
     to_stderr("making the report of {} cells\n", cells);
   const report::Report report = report::write_report(run);

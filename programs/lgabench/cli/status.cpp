@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <mutex>
 #include <set>
+#include <utility>
 
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/parallel.hpp>
 #include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/counted_progress.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/report/index.hpp>
 
@@ -99,8 +101,15 @@ int print_none_begun(const std::vector<fs::path>& directories, bool json) {
 
 int print_status(const std::vector<fs::path>& directories, bool json) {
   std::vector<Part> parts;
+  std::vector<fs::path> runs;
   for (const fs::path& directory : directories)
-    for (const fs::path& run : runs_in(directory)) parts.push_back(read_part(run));
+    for (fs::path& run : runs_in(directory)) runs.push_back(std::move(run));
+  CountedProgress progress("runs read:", static_cast<int>(runs.size()));
+  for (const fs::path& run : runs) {
+    parts.push_back(read_part(run));
+    progress.tell_next();
+  }
+  progress.end();
   std::sort(parts.begin(), parts.end(),
             [](const Part& a, const Part& b) { return std::pair(a.shard, a.name) < std::pair(b.shard, b.name); });
   if (parts.empty()) return print_none_begun(directories, json);

@@ -39,4 +39,18 @@ void also_for_workers(const std::string& path) {
   ::setenv("LGABENCH_PLUGIN_PATH", all.c_str(), 1);
 }
 
+void add_plugin_limits(Verb& verb, double& timeout_s, double& memory_gib, const std::string& whose) {
+  verb.option("--timeout SECONDS", timeout_s, fmt::format("Time limit of {}, in seconds", whose), within(1, 1e6),
+              with_default);
+  verb.option(
+      "--memory GIB", memory_gib,
+      fmt::format("Memory limit of {}, in GiB (default: 4, or half of the job's memory where that is less)", whose),
+      within(.1, 1e6));
+}
+
+double plugin_memory_gib(double asked) {
+  constexpr double gib = 1 << 30, usual = 4;
+  return asked > 0 ? asked : std::min(usual, usable_bytes() / gib / 2);
+}
+
 }  // namespace lgabench::cli

@@ -154,6 +154,13 @@ void add_pool(Verb& verb, int& jobs, double& timeout_s, More... of_timeout) {
 /// How many cells to compute at once, where --jobs is that; 0: as many as usable_cores().
 inline int jobs_of(int asked) { return asked != 0 ? asked : usable_cores(); }
 
+/// --timeout and --memory of a plugin's process, as every verb has them that uses a plugin outside of cells; `whose`:
+/// the process.
+void add_plugin_limits(Verb& verb, double& timeout_s, double& memory_gib, const std::string& whose);
+/// GiB that a plugin's process may take, where --memory is that; 0: a plugin that takes all must not take the
+/// machine's.
+double plugin_memory_gib(double asked);
+
 /// --python, as every verb has it that takes plugins in Python.
 template <class... More>
 void add_python(Verb& verb, std::string& python, More... more) {

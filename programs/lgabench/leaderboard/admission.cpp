@@ -57,8 +57,10 @@ std::vector<std::string> marks_of(const Entry& entry, bool is_ranked) {
   if (entry.fresh() > 0) marks.emplace_back("fresh");
   if (entry.fresh_commands() > 0) marks.emplace_back("fresh commands");
   if (is_ranked && entry.fresh() == 0) marks.emplace_back(never_fresh);
-  if (const std::string why = why_exempt(entry); is_ranked && entry.identity.row.acts && !why.empty())
-    marks.push_back("no fresh commands: " + why);
+  if (is_ranked && entry.identity.row.acts && entry.fresh_commands() == 0) {
+    const std::string why = why_exempt(entry);
+    marks.push_back(why.empty() ? never_fresh_commands : "no fresh commands: " + why);
+  }
   for (std::string& claim : claims(entry)) marks.push_back(std::move(claim));
   return marks;
 }
@@ -70,6 +72,7 @@ std::vector<std::pair<std::string, std::string>> meanings_of_marks() {
           {"no fresh commands",
            "no command tests whether the method has the published ones’ truths by heart: it selects nothing, selects "
            "from demonstrations, or asks people."},
+          {never_fresh_commands, "its Selections for commands that nobody knew were not looked at."},
           {never_fresh, "its success on scenes that nobody knew was not looked at."},
           {as_submitted,
            "that file is used as it came. Nobody can ask whoever gave the answers again, and the truth of shipped "

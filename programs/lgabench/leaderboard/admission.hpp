@@ -26,8 +26,9 @@ std::vector<std::pair<std::string, std::string>> meanings_of_marks();
 /// The mark of an entry whose answers are a file that its authors wrote, which may be a copy of the truth.
 inline constexpr const char* as_submitted = "answers as submitted";
 
-/// The mark of a row that was played on the board's scenes alone.
+/// Marks of a row that was tried on the board's scenes alone, and on its commands alone.
 inline constexpr const char* never_fresh = "never on fresh scenes";
+inline constexpr const char* never_fresh_commands = "never on fresh commands";
 
 /// Where its Selections come from.
 std::set<std::string> provenances_of(const Entry& entry);

@@ -2,13 +2,13 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <set>
 
+#include <lgabench/core/file_lock.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/leaderboard/fields.hpp>
@@ -261,7 +261,7 @@ BoardWriter::BoardWriter(const fs::path& board) : adding_(board / adding_directo
   fs::create_directories(entries, error);
   lock_ = Descriptor{::open(entries.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
   if (lock_.fd < 0) throw InputError(fmt::format("{}: cannot be written: {}", entries.string(), std::strerror(errno)));
-  ::flock(lock_.fd, LOCK_EX);  // a file system without locks has one writer by agreement
+  wait_for_lock(lock_.fd, Lock::exclusive, entries);
   remove_temporaries(board);
   fs::remove_all(adding_, error);
 }

@@ -1,8 +1,10 @@
 #include <lgabench/report/report.hpp>
 
+#include <chrono>
 #include <future>
 
 #include <lgabench/core/error.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/document/writers.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/report/index.hpp>
@@ -38,6 +40,8 @@ Report write_report(const fs::path& run) {
   write_file(run / report_file::claims, canonical(to_json(summary.suite, report.claims)) + "\n");
 
   const PaperValues paper = paper_values(summary.suite);
+  if (drawing.wait_for(std::chrono::seconds(5)) == std::future_status::timeout)
+    to_stderr("{}: drawing episodes for its report\n", run.string());
   const Pictures pictures = drawing.get();
   const Material material{report.run, summary, report.claims, report.agreements, paper, pictures};
   report.document = report_document(material);

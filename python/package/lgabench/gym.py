@@ -1,6 +1,7 @@
 """Scenes as Gymnasium environments, made by gymnasium.make("lgabench/heart-v1"). Most episodes are one action."""
 from __future__ import annotations
 
+import numbers
 import os
 from typing import Any, Callable, Mapping, NoReturn, Optional, Sequence, SupportsFloat, Union
 
@@ -112,14 +113,20 @@ class _Choice:
         if arm is not None and arm not in scenario.arms:
             raise ValueError(f"arm {arm!r}: expected one of {', '.join(scenario.arms)}")
         self.usual = {"split": split, "arm": arm or scenario.arms[0], "scene_seed": scene_seed}
-        self.next, self.stride = first, stride
+        self.next, self.stride, self._arms = first, stride, scenario.arms
 
     def __call__(self, seed: Optional[int], options: Optional[dict[str, Any]], random: numpy.random.Generator
                  ) -> tuple[str, str, int, int]:
         chosen = {**self.usual, **(options or {})}
         if unknown := set(chosen) - {*self.usual, "index"}:
             raise ValueError(f"options {sorted(unknown)}: expected split, arm, index, scene_seed")
+        if chosen["split"] not in SPLITS or chosen["arm"] not in self._arms:
+            raise ValueError(f"options: expected a split of {', '.join(SPLITS)} and an arm of {', '.join(self._arms)}, got "
+                             f"{chosen['split']!r}, {chosen['arm']!r}")
         index = chosen.get("index")
+        for name in "index", "scene_seed":
+            if chosen.get(name) is not None and not isinstance(chosen[name], numbers.Integral):
+                raise ValueError(f"options: {name}: expected a whole number, got {chosen[name]!r}")
         if index is None and chosen["split"] == "train":
             index = random.integers(INDICES - 1)
         elif index is None:
@@ -249,7 +256,7 @@ class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
     def reset(self, *, seed: Union[int, Sequence[Optional[int]], None] = None, options: Optional[dict[str, Any]] = None
               ) -> tuple[dict[str, Any], dict[str, Any]]:
         seeds = ([None] * self.num_envs if seed is None else
-                 [seed + i for i in range(self.num_envs)] if isinstance(seed, int) else list(seed))
+                 [int(seed) + i for i in range(self.num_envs)] if isinstance(seed, numbers.Integral) else list(seed))
         if len(seeds) != self.num_envs:
             raise ValueError(f"seed: expected {self.num_envs}, got {len(seeds)}")
         options = dict(options or {})
