@@ -75,6 +75,17 @@ class Published(Case):
         done = self.call("leaderboard", "check", "--board", BOARD, "--documents", f"{SOURCE}/docs/results.md,{SOURCE}/docs/results")
         self.assertRegex(done.stdout, r"^\d+ entr(y|ies), 0 problems\n$")
 
+    def test_no_entry_has_another_order_of_additions(self):
+        """Heat maps that AVX2 trained before vectors of every width added in one order; few_members' are withdrawn with its presets."""
+        inferred = json.loads((BOARD / "instructions.json").read_text())
+        found = []
+        for file in BOARD.glob("entries/*/*/*/entry.json"):
+            entry = json.loads(file.read_text())
+            if entry["identity"].get("options", {}).get("policy") == "heat_map" and "withdrawn" not in entry \
+                    and inferred.get(entry["id"]) == "AVX2" and "instructions" not in entry["evidence"][0]["machine"]:
+                found.append(entry["preset"]["suite"])
+        self.assertEqual(set(found) - {"few_members"}, set())
+
     def test_ranks_change_on_purpose_alone(self):
         """Rank and success of each published entry; each was replayed, and somebody vouches for that."""
         golden = pathlib.Path(__file__).parent / "golden/ranks.json"
