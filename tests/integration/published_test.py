@@ -75,6 +75,12 @@ class Published(Case):
         done = self.call("leaderboard", "check", "--board", BOARD, "--documents", f"{SOURCE}/docs/results.md,{SOURCE}/docs/results")
         self.assertRegex(done.stdout, r"^\d+ entr(y|ies), 0 problems\n$")
 
+    def test_fresh_commands_are_drawn_where_an_arm_has_words_of_its_own(self):
+        shutil.copytree(BOARD, self.dir / "board", ignore=shutil.ignore_patterns("scenes", "*.html", "superseded"))
+        entry = next(file.parent.parent.name for file in sorted((self.dir / "board/entries/lga").glob("*/perturbations-*/entry.json")))
+        said = self.call("leaderboard", "verify", entry, "--fresh-commands", "f0" * 16, "--by", "a test", "--board", "board").stdout
+        self.assertRegex(said, r"^agrees  \S+: 40 of 40 drawn commands exact \(lga: 40\), \d+ of \d+ published")
+
     def test_no_entry_has_another_order_of_additions(self):
         """Heat maps that AVX2 trained before vectors of every width added in one order; few_members' are withdrawn with its presets."""
         inferred = json.loads((BOARD / "instructions.json").read_text())

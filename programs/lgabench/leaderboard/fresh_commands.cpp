@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <boost/math/distributions/hypergeometric.hpp>
+#include <map>
 #include <set>
 
 #include <lgabench/abstraction/scene_score.hpp>
@@ -59,12 +60,15 @@ void count_published(const Entry& entry, const Installed& installed, Counts& cou
   for (const Setting::Scenario& played : installed.setting.scenarios) {
     const Scenario scenario = suite_scenario(installed.suite, played.id, Truth::released, &installed.design);
     const Json lists = entry.phi.value(played.id, Json::array());
-    if (lists.empty()) continue;  // each of its cells failed
+    if (lists.empty()) continue;                  // each of its cells failed
+    std::map<std::string, const Json*> selected;  // of some commands alone where an arm's words differ
+    for (const Json& command : lists.front()) selected[command.at("utterance")] = &command.at("selection");
     for (int i = 0; i < static_cast<int>(scenario.commands.size()); ++i) {
-      const Json& selection = lists.front().at(static_cast<std::size_t>(i)).at("selection");
-      if (scenario.commands[static_cast<std::size_t>(i)].ambiguous || selection.at("provenance") == "none") continue;
+      const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(i)];
+      const auto found = selected.find(command.utterance);
+      if (found == selected.end() || command.ambiguous || found->second->at("provenance") == "none") continue;
       ++counts.published;
-      counts.published_exact += is_exact(scenario, i, selection);
+      counts.published_exact += is_exact(scenario, i, *found->second);
     }
   }
 }
