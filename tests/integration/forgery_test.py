@@ -176,7 +176,7 @@ class Forgeries(Case):
         self.assertIn("0 problems", self.check(expect=0))
         row, before = self.rows()[self.rival.parent.name], self.before[self.rival.parent.name]
         self.assertEqual([row[0], row[2]], [before[0], before[2]])
-        self.assertEqual(row[3], "replayed; never on fresh scenes; never on fresh commands; claimed by Anonymous: a replay differed; claimed: withdrawn")
+        self.assertEqual(row[3], "replayed; never on fresh scenes; claimed by Anonymous: a replay differed; claimed: withdrawn")
 
     def test_evidence_that_somebody_adds_changes_no_tier(self):
         entry = read_entry(self.rival / "entry.json")
@@ -184,7 +184,7 @@ class Forgeries(Case):
         (self.rival / "entry.json").write_text(json.dumps(entry, sort_keys=True, indent=1, ensure_ascii=False) + "\n")
         self.add_line(self.rival, by="B. Reader", cells=12)
         self.leaderboard("vouch", self.rival.parent.name, "2")
-        self.assertEqual(self.rows()[self.rival.parent.name][3], "reproduced; never on fresh scenes; never on fresh commands")
+        self.assertEqual(self.rows()[self.rival.parent.name][3], "reproduced; never on fresh scenes")
 
     def test_a_replay_of_few_cells_is_not_vouched_for(self):
         self.add_line(self.rival, cells=3)
@@ -192,7 +192,7 @@ class Forgeries(Case):
         self.assertIn("line 2 is a replay of 3 cells; expected 12 or more: verify it with --cells 12", said)
         self.assertIn('no line "3"; expected one of its 2', self.leaderboard("vouch", self.rival.parent.name, "3", expect=2).stderr)
         self.assertIn("is vouched for already", self.leaderboard("vouch", self.rival.parent.name, "1", expect=2).stderr)
-        self.assertEqual(self.rows()[self.rival.parent.name][3], "replayed; never on fresh scenes; never on fresh commands; claimed by Prof. B. Independent: reproduced")
+        self.assertEqual(self.rows()[self.rival.parent.name][3], "replayed; never on fresh scenes; claimed by Prof. B. Independent: reproduced")
 
     def test_what_is_vouched_for_is_said(self):
         self.add_line(self.rival, by="Prof. B.\n", cells=12)

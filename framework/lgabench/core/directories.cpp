@@ -41,6 +41,11 @@ void make_directories(const fs::path& directory) {
     throw InputError(fmt::format("{}: cannot be made: {}", directory.string(), why));
 }
 
+void expect_directory(const char* variable, const fs::path& value) {
+  if (std::error_code error; !fs::is_directory(value, error))
+    throw InputError(fmt::format("{}={}: {}", variable, value.string(), error ? error.message() : "not a directory"));
+}
+
 fs::path temporary_directory() {
   std::string variable, value = "/tmp";
   for (const char* name : {"TMPDIR", "TMP", "TEMP", "TEMPDIR"})

@@ -1,4 +1,4 @@
-// Directories that are made.
+// Directories that are made, and those that variables name.
 #pragma once
 #include <string>
 
@@ -11,6 +11,9 @@ namespace lgabench {
 std::string try_make_directories(const fs::path& directory);
 /// Makes the directory as try_make_directories() does. @throws InputError with what is in the way
 void make_directories(const fs::path& directory);
+
+/// @throws InputError with the variable and its value where that is no directory.
+void expect_directory(const char* variable, const fs::path& value);
 
 /// The directory for temporary files: that of TMPDIR (else TMP, TEMP, TEMPDIR), else /tmp. @throws InputError with the
 /// variable and its value where that is no directory.

@@ -201,9 +201,8 @@ fs::path library_directory() {
 
 fs::path data_directory() {
   if (const char* named = std::getenv("LGABENCH_DATA"); named && *named) {
-    std::error_code error;
-    if (fs::is_directory(named, error)) return named;
-    throw InputError(fmt::format("LGABENCH_DATA={}: {}", named, error ? error.message() : "not a directory"));
+    expect_directory("LGABENCH_DATA", named);
+    return named;
   }
   return library_directory().parent_path() / "share" / "lgabench";
 }

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <sstream>
 
+#include <lgabench/core/directories.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/json.hpp>
@@ -49,14 +50,13 @@ std::vector<fs::path> scenario_path() {
   std::vector<fs::path> directories;
   const char* listed = std::getenv(variable);
   std::istringstream words(listed ? listed : "");
-  for (std::string word; std::getline(words, word, ':');) {
-    if (word.empty()) continue;
-    std::error_code error;
-    if (!fs::is_directory(word, error))
-      throw InputError(fmt::format("{}: {}: {}", variable, word, error ? error.message() : "not a directory"));
-    directories.emplace_back(word);
-  }
+  for (std::string word; std::getline(words, word, ':');)
+    if (!word.empty()) directories.emplace_back(word);
   return directories;
+}
+
+void expect_scenario_directories() {
+  for (const fs::path& one : scenario_path()) expect_directory(variable, one);
 }
 
 std::map<std::string, fs::path> files_on_scenario_path(const std::string& member) {

@@ -9,6 +9,8 @@ namespace lgabench {
 
 /// Its directories.
 std::vector<std::filesystem::path> scenario_path();
+/// @throws InputError where one of them is no directory: what lies there is missing everywhere.
+void expect_scenario_directories();
 
 /// Of the .json files there that can be read, those with a member that tells what they are, by id; the first of an id.
 std::map<std::string, std::filesystem::path> files_on_scenario_path(const std::string& member);

@@ -7,6 +7,7 @@
 
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/scenario_path.hpp>
 #include <lgabench/core/suggest.hpp>
 #include <lgabench/core/terminal.hpp>
 
@@ -81,6 +82,7 @@ int dispatch(CLI::App& app, const std::vector<std::string>& words, const int& ex
   try {
     try {
       expect_no_gaps(app, words);
+      if (!words.empty() && words.front() != "help" && words.front().rfind('-', 0) != 0) expect_scenario_directories();
       app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // the order that CLI11 wants
       if (app.get_subcommands().empty()) throw CLI::CallForHelp();
     } catch (const CLI::CallForVersion& e) {
