@@ -1,7 +1,6 @@
 """Scenes as Gymnasium environments, made by gymnasium.make("lgabench/heart-v1"). Most episodes are one action."""
 from __future__ import annotations
 
-import numbers
 import os
 from typing import Any, Callable, Mapping, NoReturn, Optional, Sequence, SupportsFloat, Union
 
@@ -125,7 +124,7 @@ class _Choice:
                              f"{chosen['split']!r}, {chosen['arm']!r}")
         index = chosen.get("index")
         for name in "index", "scene_seed":
-            if chosen.get(name) is not None and not isinstance(chosen[name], numbers.Integral):
+            if chosen.get(name) is not None and not isinstance(chosen[name], (int, numpy.integer)):
                 raise ValueError(f"options: {name}: expected a whole number, got {chosen[name]!r}")
         if index is None and chosen["split"] == "train":
             index = random.integers(INDICES - 1)
@@ -256,7 +255,7 @@ class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
     def reset(self, *, seed: Union[int, Sequence[Optional[int]], None] = None, options: Optional[dict[str, Any]] = None
               ) -> tuple[dict[str, Any], dict[str, Any]]:
         seeds = ([None] * self.num_envs if seed is None else
-                 [int(seed) + i for i in range(self.num_envs)] if isinstance(seed, numbers.Integral) else list(seed))
+                 [int(seed) + i for i in range(self.num_envs)] if isinstance(seed, (int, numpy.integer)) else list(seed))
         if len(seeds) != self.num_envs:
             raise ValueError(f"seed: expected {self.num_envs}, got {len(seeds)}")
         options = dict(options or {})
