@@ -123,13 +123,14 @@ function(lgabench_link_data)
           PATTERN __pycache__ EXCLUDE)
   install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_SOURCE_DIR}/LICENSE
           ${PROJECT_SOURCE_DIR}/SECURITY.md ${PROJECT_SOURCE_DIR}/CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
-  # What a packed leaderboard has beside its entries.
-  file(MAKE_DIRECTORY ${share}/archive)
-  foreach(source LICENSE CITATION.cff programs/lgabench/leaderboard/archive/README.md)
-    cmake_path(GET source FILENAME name)
-    file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${source} ${share}/archive/${name} SYMBOLIC)
-    install(FILES ${PROJECT_SOURCE_DIR}/${source} DESTINATION ${CMAKE_INSTALL_DATADIR}/lgabench/archive)
-  endforeach()
+  if(LGABENCH_PROGRAMS)  # What a packed leaderboard has beside its entries.
+    file(MAKE_DIRECTORY ${share}/archive)
+    foreach(source LICENSE CITATION.cff programs/lgabench/leaderboard/archive/README.md)
+      cmake_path(GET source FILENAME name)
+      file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${source} ${share}/archive/${name} SYMBOLIC)
+      install(FILES ${PROJECT_SOURCE_DIR}/${source} DESTINATION ${CMAKE_INSTALL_DATADIR}/lgabench/archive)
+    endforeach()
+  endif()
   # Where cmake/build fetches the sentence encoder's weights; there are none without network.
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/.deps/encoder ${share}/encoder SYMBOLIC)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/.deps/encoder/ DESTINATION ${CMAKE_INSTALL_DATADIR}/lgabench/encoder OPTIONAL)
