@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <ctime>
 #include <fstream>
 #include <set>
@@ -791,6 +792,21 @@ TEST(Schedules, MayGiveCellsInAnOrderThatIsDrawn) {
 }
 
 // Would take minutes if each cell were looked for among all.
+// Whose process did not go on: the plugin's that was awaited, or the worker's own, where engine and environment run.
+TEST(WorkerEnds, NameTheProcessThatDidNotGoOn) {
+  const std::string itself = " of the worker itself, in which engine and environment run";
+  WorkerEnd hung{5, 0, 0, true, "demonstrate", ""};
+  EXPECT_EQ(why_it_ended(hung, 5).reason, "stopped after 5 s in phase demonstrate" + itself);
+  hung.waits_for = "plugin mine (method)";
+  EXPECT_EQ(why_it_ended(hung, 5).reason,
+            "stopped after 5 s in phase demonstrate: plugin mine (method) did not answer");
+  EXPECT_EQ(why_it_ended({1, 0, 0, false, "evaluate", ""}, 5).reason, "exited with 0 in phase evaluate" + itself);
+  EXPECT_SAYS(why_it_ended({1, 0, SIGSEGV, false, "evaluate", ""}, 5).reason, " in phase evaluate" + itself);
+  const WorkerFault killed = why_it_ended({1, 0, SIGKILL, false, "evaluate", ""}, 5);
+  EXPECT_EQ(killed.fault, "host");
+  EXPECT_SILENT(killed.reason, "itself");
+}
+
 TEST(Schedules, OfAHundredThousandCellsAreGivenInSeconds) {
   std::vector<Cell> cells(100'000, cells_to_play().front());
   for (std::size_t i = 0; i < cells.size(); ++i) {
