@@ -103,11 +103,11 @@ std::vector<FeatureSet> read_sets(const JsonReader& reader, const FeatureSpace& 
 
 // Whether a scene can show one of the set's objects that is not `meant` and on which people agree.
 bool shows_another(const FeatureSet& set, const Meaning& meant, const std::vector<FeatureSet>& undecided) {
-  for (const std::string& type : set.object_types)
+  for (const std::string& type : set.object_types) {
+    if (!can_show(type, std::numeric_limits<double>::infinity())) continue;
     for (const std::string& texture : set.textures)
-      if (can_show(type, std::numeric_limits<double>::infinity()) && !meant.belongs(type, texture) &&
-          !any_contains(undecided, type, texture))
-        return true;
+      if (!meant.belongs(type, texture) && !any_contains(undecided, type, texture)) return true;
+  }
   return false;
 }
 

@@ -3,7 +3,6 @@ and Doxygen has nothing to complain of.
 
 Usage: docs_test.py SOURCE_DIR DOXYFILE [CLASS...]
 """
-import csv
 import functools
 import json
 import pathlib

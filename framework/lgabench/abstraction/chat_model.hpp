@@ -53,7 +53,7 @@ struct ChatOptions {
   int concurrency = 4;                                    // requests under way at once
   int max_queries = -1;                                   // queries to the server, in this object's life; -1: no limit
   std::function<void(int asked, int all)> progress = {};  // called from answer()'s thread alone, every 10 s at least
-  std::function<void(const std::string&)> waiting = {};   // told, in a line, what the model waits for; likewise
+  std::function<void(const std::string&)> waiting = {};   // told, in a line, what it waits for or cannot read; likewise
   std::function<void(bool begins)> in_line = {};          // told where the model waits for another process that asks
   bool any_served = false;                                // as of Cassette::add()
   std::string prompt{};       // read_prompt()'s, in place of selection.txt; "": the cassette's, where the model has one

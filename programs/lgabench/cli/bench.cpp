@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <condition_variable>
 #include <ctime>
+#include <future>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <thread>
 
@@ -45,28 +44,21 @@ struct BenchArguments {
 class Watch {
  public:
   Watch(const std::string& who, double seconds) {
-    thread_ = start_thread([this, who, seconds] {
-      std::unique_lock lock(mutex_);
-      if (over_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return is_over_; })) return;
+    thread_ = start_thread([over = over_.get_future(), who, seconds] {
+      if (over.wait_for(std::chrono::duration<double>(seconds)) != std::future_status::timeout) return;
       to_stderr("lgabench: {}: its use took longer than {:g} s (--timeout): nothing was measured\n", who, seconds);
       ::_exit(cells_failed);
     });
   }
   ~Watch() {
-    {
-      const std::lock_guard lock(mutex_);
-      is_over_ = true;
-    }
-    over_.notify_one();
+    over_.set_value();
     thread_.join();
   }
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;
 
  private:
-  std::mutex mutex_;
-  std::condition_variable over_;
-  bool is_over_ = false;
+  std::promise<void> over_;
   std::thread thread_;
 };
 
