@@ -17,7 +17,7 @@ namespace lgabench::tabletop {
 struct Errands {
   std::string scenes_of;      // the scenario in whose name scenes are drawn
   std::vector<Meaning> pair;  // in the order in which scenes give them
-  std::vector<ErrandClass> classes;
+  std::shared_ptr<const std::vector<ErrandClass>> classes;  // one list for training and all arms
   std::vector<std::size_t> class_of;        // of each command
   std::vector<std::pair<int, int>> needed;  // takes of the one and of the other; none in training
   bool appears = false;
@@ -105,12 +105,13 @@ ErrandClass read_class(const JsonReader& reader, const Scenario& scenario) {
 }
 
 void read_classes(const Scenario& scenario, const JsonReader& file, Errands& errands) {
-  for (const JsonReader& one : file.at("classes").elements()) errands.classes.push_back(read_class(one, scenario));
-  const auto class_of = [&errands](const Meaning& meaning, const JsonReader& place) {
-    const auto found = std::find_if(errands.classes.begin(), errands.classes.end(),
+  std::vector<ErrandClass> classes;
+  for (const JsonReader& one : file.at("classes").elements()) classes.push_back(read_class(one, scenario));
+  const auto class_of = [&classes](const Meaning& meaning, const JsonReader& place) {
+    const auto found = std::find_if(classes.begin(), classes.end(),
                                     [&](const ErrandClass& one) { return same_sets(one.sets, meaning.sets); });
-    if (found == errands.classes.end()) place.fail("the sets of all parts of one of \"classes\"");
-    return static_cast<std::size_t>(found - errands.classes.begin());
+    if (found == classes.end()) place.fail("the sets of all parts of one of \"classes\"");
+    return static_cast<std::size_t>(found - classes.begin());
   };
   const std::vector<JsonReader> commands = file.at("commands").elements();
   for (std::size_t i = 0; i < commands.size(); ++i)
@@ -119,20 +120,21 @@ void read_classes(const Scenario& scenario, const JsonReader& file, Errands& err
   if (class_of(errands.pair[0], place) != class_of(errands.pair[1], place)) place.fail("a pair of one class");
 
   std::vector<std::vector<Pool>> meant;  // by commands of other classes
-  for (std::size_t i = 0; i < errands.classes.size(); ++i) {
+  for (std::size_t i = 0; i < classes.size(); ++i) {
     meant.emplace_back();
-    const Pool& all = errands.classes[i].others.front();
-    for (std::size_t k = 0; k < errands.classes.size(); ++k) {
+    const Pool& all = classes[i].others.front();
+    for (std::size_t k = 0; k < classes.size(); ++k) {
       if (k == i) continue;
       Pool pool = all.only([&](const Named& one) {
-        const std::vector<Pool>& members = errands.classes[k].members;
+        const std::vector<Pool>& members = classes[k].members;
         return std::any_of(members.begin(), members.end(), [&one](const Pool& part) { return part.holds(one); });
       });
       if (!pool.empty()) meant.back().push_back(std::move(pool));
     }
   }
   for (std::size_t i = 0; i < meant.size(); ++i)
-    if (!meant[i].empty()) errands.classes[i].others = std::move(meant[i]);
+    if (!meant[i].empty()) classes[i].others = std::move(meant[i]);
+  errands.classes = std::make_shared<const std::vector<ErrandClass>>(std::move(classes));
 }
 
 void read_needed(const JsonReader& reader, Errands& errands) {
@@ -158,7 +160,7 @@ void read_to_refuse(const Scenario& scenario, const JsonReader& file, Errands& e
                scenario.space);
   if (!shows_all(all.members)) commands.front().at("truth").at("target").fail("sets of what scenes can show");
   if (all.near.empty()) file.at("near_miss_sets").fail("what scenes can show and the command does not mean");
-  errands.classes.push_back(std::move(all));
+  errands.classes = std::make_shared<const std::vector<ErrandClass>>(1, std::move(all));
   errands.class_of.push_back(0);
 }
 
@@ -261,7 +263,7 @@ Scene errand_scene(const Scenario& scenario, const SceneRequest& request, int in
 
   RandomStream random = stream("errand");
   const auto draw = [&]() -> std::optional<Things> {
-    const ErrandClass& of = errands.classes[errands.class_of[command]];
+    const ErrandClass& of = (*errands.classes)[errands.class_of[command]];
     if (errands.refusing) return draw_to_refuse(of, objects_of(errands), random);
     if (errands.training) return draw_training(of, *scene.errand, random);
     const std::size_t which = static_cast<std::size_t>(*scene.pair) % errands.needed.size();

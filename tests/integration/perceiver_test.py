@@ -80,6 +80,11 @@ class Perceivers(case.Case):
         said = self.call("verify", "run", "--all", "--plugin-path", "fixture_reader.so").stdout
         self.assertEqual(said.count("\nbit-identical "), 2, said)
 
+    def test_nobody_knows_what_one_takes(self):
+        said = self.run_names("simulator,read,fixture_reader", "--dry-run").stdout
+        self.assertRegex(said, r"\nhuman\+names=fixture_reader +1 +0 +at least .* nobody: what its own plugin takes is unknown\n")
+        self.assertRegex(said, r"\nhuman\+names=read +1 +0 +\d.* cells measured elsewhere\n")
+
     @unittest.skipUnless(HAS_NUMPY, f"{PYTHON} has no NumPy")
     def test_the_same_reader_in_python_acts_alike(self):
         self.run_names("fixture_reader", "--no-reference", out="library")

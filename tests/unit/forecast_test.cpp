@@ -187,6 +187,22 @@ TEST(Forecasts, SayWhatIsUnknown) {
   EXPECT_SAYS(later.text(1), ": about ");
 }
 
+// What an option counts is learnt that often, with any demonstrations.
+TEST(Forecasts, CountUpdates) {
+  Cell cell = recorded("q2", 4).front().cell;
+  cell.method.id = cell.method.name = "diffusion";
+  const auto learning = [&cell](int updates) {
+    cell.method.options["updates"] = updates;
+    return usual_seconds(cell) - least_seconds(cell);
+  };
+  EXPECT_EQ(measured_on(cell), "");
+  EXPECT_GT(learning(1200), 10);
+  EXPECT_NEAR(learning(12'000), 10 * learning(1200), 1e-6);
+  const double few = learning(1200);
+  cell.demonstrations *= 5;
+  EXPECT_NEAR(learning(1200), few, 1e-6);
+}
+
 // The half of the most steps is played, in training and in tests.
 TEST(Forecasts, CountSteps) {
   const std::vector<Played> one_step = recorded("q2", 4);

@@ -16,11 +16,13 @@ constexpr double start_s = .1;            // processes, plugins, files
 constexpr double demonstration_s = .001;  // clean; from the cache
 constexpr double episode_s = .005;        // with the second try on the true mask
 
-// Milliseconds of training for each demonstration and pass, of a method, or of any, with that value of an option.
+// Milliseconds of training for each demonstration and pass, of a method, or of any, with that value of an option; or for
+// each of what the option `counts` says.
 struct Entry {
   std::string method, option;
   Json value;
   double learn_ms;
+  std::string counts;
 };
 struct Table {
   std::vector<Entry> entries;  // the first that fits a cell counts
@@ -35,9 +37,10 @@ const Table& measured() {
     Table all;
     for (const JsonReader& entry : reader.at("entries").elements())
       all.entries.push_back({entry.at("method").string(), entry.has("option") ? entry.at("option").string() : "",
-                             entry.has("value") ? entry.at("value").json() : Json(), entry.at("learn_ms").number()});
+                             entry.has("value") ? entry.at("value").json() : Json(), entry.at("learn_ms").number(),
+                             entry.has("counts") ? entry.at("counts").string() : ""});
     const JsonReader others = reader.at("others");
-    all.others = {others.at("taken_for").string(), "", Json(), others.at("learn_ms").number()};
+    all.others = {others.at("taken_for").string(), "", Json(), others.at("learn_ms").number(), ""};
     return all;
   }();
   return table;
@@ -88,9 +91,11 @@ double usual_seconds(const Cell& cell) {
   const Json epochs = options.value("epochs", Json(750));
   const double passes = epochs.is_number() ? epochs.get<double>() : 750;
   const double demonstrations = demonstrations_of(cell);
-  const double learn_s = options.value("policy", Json()) == "heat_map" ? heat_map_s * std::min(demonstrations, 16.)
-                                                                       : demonstrations * passes * learn_ms / 1000;
-  return least_seconds(cell) + learn_s;
+  if (options.value("policy", Json()) == "heat_map")
+    return least_seconds(cell) + heat_map_s * std::min(demonstrations, 16.);
+  const bool counted = entry && !entry->counts.empty();
+  return least_seconds(cell) +
+         (counted ? options.value(entry->counts, 0.) : demonstrations * passes) * learn_ms / 1000;
 }
 
 double least_seconds(const Cell& cell) {

@@ -312,10 +312,13 @@ bool has_own_arithmetic(const Cell& cell, const Catalogue& catalogue) {
 }
 
 bool takes_unknown_time(const Cell& cell, const Catalogue& catalogue) {
-  const PluginInfo *const method = method_plugin(cell, catalogue), *const plays = environment_plugin(cell, catalogue);
-  if (plays && !has_shipped_bytes(*plays, catalogue)) return true;
-  return !measured_on(cell).empty() &&
-         (is_strangers(cell, catalogue) || (method && !has_shipped_bytes(*method, catalogue)));
+  const auto is_own = [&catalogue](const PluginInfo* plugin) {
+    return plugin && !has_shipped_bytes(*plugin, catalogue);
+  };
+  const std::vector<PluginInfo> axes = axis_plugins(cell, catalogue);
+  return is_own(environment_plugin(cell, catalogue)) || is_own(perceiver_plugin(cell, catalogue)) ||
+         std::any_of(axes.begin(), axes.end(), [&](const PluginInfo& axis) { return is_own(&axis); }) ||
+         (!measured_on(cell).empty() && (is_strangers(cell, catalogue) || is_own(method_plugin(cell, catalogue))));
 }
 
 std::string TimeSpent::text(int jobs) const {

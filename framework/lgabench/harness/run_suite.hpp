@@ -75,7 +75,8 @@ std::string run_hash(const std::vector<Cell>& cells, const Catalogue& catalogue)
 /// Whether what acts in the cell is a method that did not come with the installation, told by its bytes.
 bool is_strangers(const Cell& cell, const Catalogue& catalogue);
 
-/// Whether a plugin that is not lgabench's own plays, learns or selects in the cell: nobody has measured what it takes.
+/// Whether a plugin that is not lgabench's own plays, perturbs, perceives, learns or selects in the cell: nobody has
+/// measured what it takes.
 bool takes_unknown_time(const Cell& cell, const Catalogue& catalogue);
 /// Whether nothing but the installation's own arithmetic computes the cell: no plugin that came from elsewhere, and no
 /// LibTorch, whose kernels are chosen by the processor. Such a cell has the same bits on every processor with fused
