@@ -15,11 +15,11 @@
 namespace lgabench::tabletop {
 
 struct Errands {
-  std::string scenes_of;      // the scenario in whose name scenes are drawn
-  std::vector<Meaning> pair;  // in the order in which scenes give them
+  std::string scenes_of;                                    // the scenario in whose name scenes are drawn
+  std::vector<Meaning> pair;                                // in the order in which scenes give them
   std::shared_ptr<const std::vector<ErrandClass>> classes;  // one list for training and all arms
-  std::vector<std::size_t> class_of;        // of each command
-  std::vector<std::pair<int, int>> needed;  // takes of the one and of the other; none in training
+  std::vector<std::size_t> class_of;                        // of each command
+  std::vector<std::pair<int, int>> needed;                  // takes of the one and of the other; none in training
   bool appears = false;
   bool training = false;
   bool refusing = false;  // one command and class: what is meant may not be there

@@ -175,10 +175,11 @@ class CheckPlugin(Case):
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=self.environment, cwd=self.dir)
         first = process.stderr.readline()  # while the plugin sleeps
         self.assertIsNone(process.poll())
-        out, _ = process.communicate()
+        out, said = process.communicate()
         self.assertRegex(first, r"^still in act after 2\d s; it is stopped after 23 s \(--timeout\)$")
         self.assertRegex(out, r"(?s)^fixture_faulty 0.1, a method\n  ok +descriptor .*  ok +Selection .*  problem +process +stopped after 23 s in phase act: plugin fixture_faulty \(method\) did not answer\n")
         self.assertEqual(out.count("\n  ok       Selection "), 1, "each line once")
+        self.assertNotIn("once more", said, "there is nothing to compare with")
 
     def test_a_selection_of_which_nothing_can_be_shown_ends_a_cell_and_is_no_fault(self):
         report = json.loads(self.call("check-plugin", UNSOUND, "--json", "--set", "how=unshowable").stdout)
@@ -266,6 +267,7 @@ class CheckPlugin(Case):
             self.assertEqual((found["environment"], "unseen commands" in found), (environment, unseen))
         self.assertIn("8 numbers each", found["actions"])
         engine = BUILD / "lib/lgabench/plugins/kinematic.so"
+        self.assertEqual(self.call("check-plugin", engine, "--environment", "mobile").stderr, "the same once more in a second process\n")
         report = json.loads(self.call("check-plugin", engine, "--json", "--environment", "mobile").stdout)
         oracles = {finding["check"] for finding in report["findings"] if finding["check"].startswith("oracle")}
         self.assertEqual(oracles, {"oracle, bring", "oracle, throw_away", "oracle, fetch"})

@@ -16,8 +16,8 @@ constexpr double start_s = .1;            // processes, plugins, files
 constexpr double demonstration_s = .001;  // clean; from the cache
 constexpr double episode_s = .005;        // with the second try on the true mask
 
-// Milliseconds of training for each demonstration and pass, of a method, or of any, with that value of an option; or for
-// each of what the option `counts` says.
+// Milliseconds of training for each demonstration and pass, of a method, or of any, with that value of an option; or
+// for each of what the option `counts` says.
 struct Entry {
   std::string method, option;
   Json value;
@@ -94,8 +94,7 @@ double usual_seconds(const Cell& cell) {
   if (options.value("policy", Json()) == "heat_map")
     return least_seconds(cell) + heat_map_s * std::min(demonstrations, 16.);
   const bool counted = entry && !entry->counts.empty();
-  return least_seconds(cell) +
-         (counted ? options.value(entry->counts, 0.) : demonstrations * passes) * learn_ms / 1000;
+  return least_seconds(cell) + (counted ? options.value(entry->counts, 0.) : demonstrations * passes) * learn_ms / 1000;
 }
 
 double least_seconds(const Cell& cell) {

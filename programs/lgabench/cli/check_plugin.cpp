@@ -182,15 +182,20 @@ std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
   const PoolOptions pool{1, a.timeout_s, plugin_memory_gib(a.memory_gib)};
   const std::optional<PluginInfo> engine = engine_for(plugin, catalogue, a.environment);
   std::array<CheckProcess, 2> both = two_processes(plugin, engine, a, pool, scratch.path);
-  const auto make = [&](std::size_t i) {
-    fs::create_directory(both[i].job.scratch);
-    return WorkerTask{to_json(both[i].job), both[i].log, "check-job"};
-  };
   Watching watching(report, both[0].report, a);
-  const PoolEvents events{[](std::size_t) {},
-                          [&](std::size_t, const std::string& phase, long long) { watching.phase(phase); },
-                          [&](std::size_t i, const WorkerEnd& end) { both[i].end = end; }, [&] { watching.tick(); }};
-  if (!run_workers(both.size(), make, pool, events)) throw InputError("interrupted");
+  const auto use = [&](CheckProcess& process) {
+    fs::create_directory(process.job.scratch);
+    const PoolEvents events{[](std::size_t) {},
+                            [&](std::size_t, const std::string& phase, long long) { watching.phase(phase); },
+                            [&](std::size_t, const WorkerEnd& end) { process.end = end; }, [&] { watching.tick(); }};
+    const auto task = [&process](std::size_t) { return WorkerTask{to_json(process.job), process.log, "check-job"}; };
+    if (!run_workers(1, task, pool, events)) throw InputError("interrupted");
+  };
+  use(both[0]);
+  if (both[0].ended_well()) {
+    if (!a.json) to_stderr("the same once more in a second process\n");
+    use(both[1]);
+  }
 
   const CheckReport first = both[0].found();
   report.findings.insert(report.findings.end(), first.findings.begin(), first.findings.end());
