@@ -300,25 +300,29 @@ bool is_strangers(const Cell& cell, const Catalogue& catalogue) {
   return method && !has_shipped_bytes(*method, catalogue);
 }
 
-bool has_own_arithmetic(const Cell& cell, const Catalogue& catalogue) {
+// What plays, perturbs and perceives in a cell, its engine apart.
+static std::vector<PluginInfo> plugins_around(const Cell& cell, const Catalogue& catalogue) {
   std::vector<PluginInfo> plugins = axis_plugins(cell, catalogue);
+  for (const PluginInfo* one : {environment_plugin(cell, catalogue), perceiver_plugin(cell, catalogue)})
+    if (one) plugins.push_back(*one);
+  return plugins;
+}
+
+bool has_own_arithmetic(const Cell& cell, const Catalogue& catalogue) {
+  std::vector<PluginInfo> plugins = plugins_around(cell, catalogue);
   if (const auto engine = engine_plugin(cell, catalogue)) plugins.push_back(*engine);
-  if (const PluginInfo* environment = environment_plugin(cell, catalogue)) plugins.push_back(*environment);
   if (const PluginInfo* method = trained_plugin(cell, catalogue)) plugins.push_back(*method);
-  if (const PluginInfo* perceiver = perceiver_plugin(cell, catalogue)) plugins.push_back(*perceiver);
   return std::all_of(plugins.begin(), plugins.end(), [&](const PluginInfo& plugin) {
     return has_shipped_bytes(plugin, catalogue) && plugin.fingerprint.find("LibTorch=none") != std::string::npos;
   });
 }
 
 bool takes_unknown_time(const Cell& cell, const Catalogue& catalogue) {
-  const auto is_own = [&catalogue](const PluginInfo* plugin) {
-    return plugin && !has_shipped_bytes(*plugin, catalogue);
-  };
-  const std::vector<PluginInfo> axes = axis_plugins(cell, catalogue);
-  return is_own(environment_plugin(cell, catalogue)) || is_own(perceiver_plugin(cell, catalogue)) ||
-         std::any_of(axes.begin(), axes.end(), [&](const PluginInfo& axis) { return is_own(&axis); }) ||
-         (!measured_on(cell).empty() && (is_strangers(cell, catalogue) || is_own(method_plugin(cell, catalogue))));
+  const auto is_own = [&](const PluginInfo& plugin) { return !has_shipped_bytes(plugin, catalogue); };
+  const std::vector<PluginInfo> around = plugins_around(cell, catalogue);
+  if (std::any_of(around.begin(), around.end(), is_own)) return true;
+  const PluginInfo* const method = method_plugin(cell, catalogue);
+  return !measured_on(cell).empty() && (is_strangers(cell, catalogue) || (method && is_own(*method)));
 }
 
 std::string TimeSpent::text(int jobs) const {
