@@ -4,7 +4,7 @@
 
 using namespace lgabench;
 
-// A feature matters if a word of the command begins with the feature's first word; if none does, all matter.
+// A feature matters if a word of the command begins with the feature's first word; if no feature does, all matter.
 std::vector<std::string> named(const Command& command, const std::vector<std::string>& features) {
   std::vector<std::string> found;
   for (const std::string& feature : features)
@@ -21,4 +21,5 @@ class SelectOnly : public CloningMethod {
   }
 };
 
-LGABENCH_METHOD("select_only", "0.1", "Keeps what the command names", SelectOnly, "{" LGABENCH_CLONING_OPTIONS "}")
+LGABENCH_METHOD("select_only", "0.1", "Keeps what the command names", SelectOnly,
+                "{" LGABENCH_CLONING_OPTIONS "," LGABENCH_MASK_OPTIONS "}")

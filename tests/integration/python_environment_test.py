@@ -100,7 +100,20 @@ class PythonEnvironments(PythonCase):
             scenario.write_text(scenario.read_text().replace("\"tabletop\"", "\"discs\""))
         self.run_suite("--no-reference")
         self.assertEqual({status["state"] for _, status in self.cells("run").values()}, {"ok"})
+        found, path = self.environment.pop("LGABENCH_SCENARIO_PATH"), ("--scenario-path", "mine")
+        self.environment["LGABENCH_PYTHON"] = PYTHON
+        cell = next(self.dir.glob("run/cells/*/episodes.jsonl")).parent.name
+        for words in ("verify", "run"), ("replay", "run", f"{cell}/test/0", "--out", "episode.png"):
+            self.assertIn("others are found with --scenario-path or", self.call(*words, *self.path, expect=2).stderr)
+            self.call(*words, *self.path, *path)
+        for words in ("render", "my_world_red"), ("check-scenario", "my_world_red", "--scenes", "1"):
+            self.call(*words, "--plugin-path", WORD, *path, "--out", "scene.png")
+        self.call("check-scenario", "mine/my_world_red.json", "--scenes", "1", "--plugin-path", WORD)
+        self.environment["LGABENCH_SCENARIO_PATH"] = found
         file.write_text(json.dumps({**space, "object_types": ["round", "square"]}))
+        self.call("run", "mine/my_world_suite.json", "--answers", "none", "--methods", "human", "--demos", "1", "--seeds", "1", "--episodes", "2",
+                  "--set", "human.epochs=1", "--engines", "own", "--no-reference", "--out", "other", *self.path)
+        self.assertIn('different files of the feature space "discs"', self.call("merge", "both", "run", "other", expect=2).stderr)
         self.assertIn("same settings, other data or versions", self.run_suite("--no-reference", "--resume", expect=2).stderr)
         file.write_text(json.dumps({**space, "object_types": ["round", "round"]}))
         self.assertIn("discs.json: /object_types: expected names, each once", self.run_suite("--no-reference", "--fresh", expect=2).stderr)

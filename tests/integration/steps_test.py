@@ -27,6 +27,8 @@ BREAKS = {
     "oracle_waits": "one of them: scene 9 of test, step 20: not_reached",
     "oracle_stops": AT + "0: the oracle says that nothing is left to do, and the scenario has no may_stop",
     "remembers": "a scene played again ended differently",
+    "word": ': the failure is "lost_way", expected one that the environment names: not_reached, wrong_disc',
+    "one_object": "any object in scenes of reach2d_red: only what is meant is taken",
 }
 
 

@@ -30,7 +30,11 @@ class InOrder final : public Environment {
         space_(scenario.space),
         size_(scenario.environment->picture_size()),
         most_instances_(most_instances_of(scenario)),
-        of_plugin_(!contains(environment_ids(), id_)) {}
+        of_plugin_(!contains(environment_ids(), id_)),
+        failures_(scenario.environment->failures()) {
+    for (const std::string& of_task : find_task(*scenario.environment, scenario.task).failures)
+      failures_.push_back(of_task);
+  }
 
   const ActionSpace& action_space() const override { return environment_->action_space(); }
   int most_steps() const override { return most_steps_; }
@@ -99,6 +103,9 @@ class InOrder final : public Environment {
     if (result.is_success && (!result.terminated || result.truncated)) fail("a success in an episode that did not end");
     if (most_steps_ > 1 && over == (result.failure == failure::goes_on))
       fail(fmt::format("the failure of an episode that {} is \"{}\"", over ? "is over" : "goes on", result.failure));
+    if (of_plugin_ && over && !result.is_success && !contains(failures_, result.failure))
+      fail(fmt::format("the failure is \"{}\", expected one that the environment names: {}", result.failure,
+                       fmt::join(failures_, ", ")));
     result.observation = checked(std::move(result.observation));
     return result;
   }
@@ -153,6 +160,7 @@ class InOrder final : public Environment {
   const PictureSize size_;
   const int most_instances_;
   const bool of_plugin_;
+  std::vector<std::string> failures_;
   std::string arm_;
   int index_ = 0, steps_ = 0;  // of the scene; since reset()
   bool has_scene_ = false, over_ = false;

@@ -1,17 +1,22 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/check.hpp>
 #include <lgabench/cell/engine_contract.hpp>
+#include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/read_space.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/core/suggest.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench {
@@ -125,11 +130,35 @@ std::string judge_task(const TaskInfo& task_info, const std::optional<PluginInfo
   return all;
 }
 
+// What else may be taken ends the episode by a word of the environment's own, or wins: the row random_object does so.
+void judge_others(const TaskInfo& task, const std::optional<PluginInfo>& engine, CheckReport& report) {
+  const Scenario scenario = load_scenario(task.example);
+  const auto environment = make_environment(scenario, load_engine(engine));
+  std::set<std::string> ends;
+  for (int i = 0; i < scenes_a_task; ++i) {
+    const Scene scene = test_scene(scenario, task.layouts.front(), scenario.tests.front().id, engine_seed, i);
+    std::vector<std::uint8_t> ids;
+    for (const Instance& one : environment->reset(scene).instances)
+      if (!is_place(one.object_type)) ids.push_back(one.id);
+    if (ids.empty()) continue;
+    const std::uint8_t id = ids[static_cast<std::size_t>(i) % ids.size()];
+    StepResult result;
+    do result = environment->step(environment->expert_action_for(id));
+    while (!result.terminated && !result.truncated);
+    ends.insert(result.failure);
+  }
+  report.ok("any object, " + task.id, fmt::format("episodes end as {}", fmt::join(ends, ", ")));
+}
+
 // heat_map's map has so many cells, whatever the picture.
 constexpr int map_rows = 32, map_columns = 64;
 
 void judge_description(const EnvironmentType& environment, CheckReport& report) {
   const PictureSize size = environment.picture_size();
+  for (const std::string& space : environment.spaces())
+    if (!contains(feature_space_ids(), space))
+      report.problem("spaces", none_named("feature space", space, feature_space_ids()),
+                     "name spaces that are there: NAME.json beside the scenarios");
   report.judge("description", environment.tasks().empty() ? "it has no task" : "",
                fmt::format("{} task(s), an action of {} numbers, {} x {} pixels", environment.tasks().size(),
                            environment.action_space().size(), size.rows, size.columns),
@@ -195,6 +224,8 @@ CheckReport check_environment(const PluginInfo& plugin, const std::optional<Plug
       begins("scenes of " + task.example);
       judge_scenes(environment, task, engine, report);
       all += judge_task(task, engine, 0, of_environment, report);
+      begins("any object in scenes of " + task.example);
+      judge_others(task, engine, report);
     }
     if (plugin.python.is_null()) judge_leftovers(report, [&at_first] { return ProcessState::now().beyond(at_first); });
   });

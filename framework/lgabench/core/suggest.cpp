@@ -61,14 +61,17 @@ std::string none_named(std::string_view what, std::string_view word, const std::
   const std::string begin = fmt::format("no {} \"{}\"", what, word);
   if (known.empty()) return begin + ", there is none";
   if (const std::string near = suggestion(word, known); !near.empty()) return begin + near;
-  if (known.size() <= most) return fmt::format("{}, expected one of: {}", begin, fmt::join(known, ", "));
+  const char* const others = what == "scenario" || what == "feature space"
+                                 ? "; others are found with --scenario-path or $LGABENCH_SCENARIO_PATH"
+                                 : "";
+  if (known.size() <= most) return fmt::format("{}, expected one of: {}{}", begin, fmt::join(known, ", "), others);
   std::vector<std::string> similar = known;
   std::stable_sort(similar.begin(), similar.end(),
                    [word](const std::string& a, const std::string& b) { return shared(word, a) > shared(word, b); });
   similar.resize(examples);
   const bool is_listed = what == "scenario" || what == "arm";  // by a command
-  return fmt::format("{}, expected one of {}, such as: {}{}", begin, known.size(), fmt::join(similar, ", "),
-                     is_listed ? fmt::format(" (lgabench list {}s)", what) : "");
+  return fmt::format("{}, expected one of {}, such as: {}{}{}", begin, known.size(), fmt::join(similar, ", "),
+                     is_listed ? fmt::format(" (lgabench list {}s)", what) : "", others);
 }
 
 std::string some_of(const std::vector<std::string>& all, std::string_view separator) {

@@ -32,9 +32,10 @@ void expect_all_commands(const RecordedAnswers& answers, const std::vector<std::
   }
   if (!lacking.empty())
     throw InputError(fmt::format(
-        "--answers {}: expected answers for {}; it has those for: {}. Give --answers cassette:FILE or openai "
+        "--answers {}: expected answers for {}; it has {}. Give --answers FILE.json, cassette:FILE or openai "
         "(docs/language-models.md), or, with methods that ask no language model, --answers {}",
-        answers.source, some_of(lacking), some_of(known, " | "), to_string(NoAnswers())));
+        answers.source, some_of(lacking),
+        known.empty() ? "none in their feature space" : "those for: " + some_of(known, " | "), to_string(NoAnswers())));
 }
 
 }  // namespace

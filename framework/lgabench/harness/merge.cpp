@@ -205,6 +205,17 @@ void expect_one_python(const Candidate& here, std::map<std::string, std::pair<Js
                     first.string(), here.directory.string(), method));
 }
 
+// A feature space of one's own is a file, which may change between two runs. `known`: hashes of the cells before this
+// one, by space, and where.
+void expect_one_space(const Candidate& here, std::map<std::string, std::pair<Json, fs::path>>& known) {
+  const Json space = here.cell.scenario->value("feature_space", Json()),
+             hash = here.cell.data.value("feature_space", Json());
+  const auto& [first_hash, first] = known.try_emplace(space.dump(), hash, here.directory).first->second;
+  if (first_hash != hash)
+    throw InputError(fmt::format("{} and {}: different files of the feature space {}", first.string(),
+                                 here.directory.string(), space.dump()));
+}
+
 bool asks_live(const RunPart& part) {
   const Json answers = part.record().request.value("answers", Json());
   return answers.is_string() && std::holds_alternative<LiveAnswers>(read_answer_source(answers));
@@ -281,11 +292,12 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
   const bool of_several_runs = all.cells != parts.front().record().cells;
   std::set<std::string> left_out;
   std::map<std::string, fs::path> chosen, measured;
-  std::map<std::string, std::pair<Json, fs::path>> pythons;
+  std::map<std::string, std::pair<Json, fs::path>> pythons, spaces;
   for (const std::string& key : all.cells) {
     const std::optional<Candidate> from = best(parts, key, left_out);
     if (!from) continue;
     expect_one_python(*from, pythons);
+    expect_one_space(*from, spaces);
     if (of_several_runs) expect_one_of_each(*from, all.request, measured);
     chosen[key] = from->directory;
   }

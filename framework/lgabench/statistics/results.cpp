@@ -51,7 +51,7 @@ void read_episodes(const fs::path& file, CellResult& cell) {
   std::map<std::string, std::map<int, Episode>> played;
   const std::set<std::string> own = further_words(cell.environment);
   const std::vector<std::string> words = failure_words(own);
-  const bool any_word = own.empty() && cell.configuration.has_plugin_environment();  // it is not there to ask
+  const bool any_word = cell.configuration.has_plugin_environment();  // which may not be there to ask
   int line = 0;
   for (const Json& json : parse_json_lines(read_file(file, Links::refused), file.string())) {
     const JsonReader reader(json, fmt::format("{}: line {}", file.string(), ++line));

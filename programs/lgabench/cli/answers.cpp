@@ -29,6 +29,7 @@ struct AnswersArguments {
   std::string suite, form = forms.front(), model, request, prompt;
   fs::path questions, from, cassette;
   bool batch = false, any_served = false;
+  std::vector<fs::path> plugin_path;
 };
 
 template <class Use>
@@ -216,6 +217,7 @@ void add_answers(CLI::App& app, int& exit) {
   verb.option("--batch", a->batch,
               "Write a batch file for OpenAI's API instead, with one request to --model in each line")
       ->needs(questions);
+  add_plugin_path(verb, a->plugin_path, any_plugin);
   add_scenario_path(verb);
   verb.below("Replies");
   auto* from = verb.option("--from FILE", a->from,

@@ -72,6 +72,7 @@ void add_attribute(CLI::App& app, int& exit) {
   verb.option("--rows ROW,...", a->rows, "Rows, by name, separated by commas (default: all rows without attribution)");
   verb.option("--out DIR", a->out, "The directory for the copy (default: RUN-attributed)");
   add_plugin_path(verb, a->plugin_path, any_plugin);
+  add_scenario_path(verb);
   verb.below("How cells are computed");
   add_pool(verb, a->jobs, a->timeout_s);
   add_methods_in_python(verb, *a);

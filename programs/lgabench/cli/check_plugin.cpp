@@ -231,7 +231,7 @@ int check_plugin(CheckPluginArguments a) {
   } catch (const PluginError& e) {
     const bool in_options = std::string_view(e.what()).find(": options: ") != std::string_view::npos;
     report.problem("descriptor", e.what(),
-                   is_python_method(a.file) ? "see docs/add-a-method.md"
+                   is_python_method(a.file) ? "see docs/add-a-method.md, or docs/simulators.md for an environment"
                    : in_options             ? "correct the options that LGABENCH_METHOD, or the like, is given"
                                             : "build it with lgabench_add_plugin() from this very lgabench's package, "
                                               "and no definition that changes the standard library");
@@ -256,7 +256,8 @@ void add_check_plugin(CLI::App& app, int& exit) {
   auto a = std::make_shared<CheckPluginArguments>();
   Verb verb(app, "check-plugin", "Check a plugin for mistakes, and say how to fix them");
   verb.option("file FILE", a->file,
-              "The plugin's library, FILE.so, or a method, perturbation or perceiver in Python, FILE.py:CLASS",
+              "The plugin's library, FILE.so, or a method, perturbation, perceiver or environment in Python, "
+              "FILE.py:CLASS",
               required);
   verb.option("--python PROGRAM", a->python, "The interpreter for a plugin in Python", with_default);
   verb.option("--set OPTION=VALUE", a->settings, "An option of the plugin; can be repeated", repeatable);

@@ -41,8 +41,8 @@ Scenario scenario_of(const std::string& word) {
   const fs::path file = word;
   if (file.extension() != ".json") return load_scenario(word);
   if (std::error_code not_there; !fs::exists(file, not_there)) throw InputError(word + ": no such file");
-  read_scenario(read_json(file), word);  // which says why a file of another kind is none
-  lgabench::add_scenario_path(fs::absolute(file).parent_path());
+  lgabench::add_scenario_path(fs::absolute(file).parent_path());  // a space of its own lies there too
+  read_scenario(read_json(file), word);                           // which says why a file of another kind is none
   return load_scenario(file.stem().string());
 }
 

@@ -18,7 +18,7 @@ void print(const Finding& finding) {
   const auto& [state, check, detail, fix] = finding;
   const std::string word = fmt::format("{:<8}", to_string(state));
   put(stdout, "  " + (state == Finding::State::problem ? painted(stdout, Colour::red, word) : word));
-  to_stdout(" {:<22} {}\n", check, detail);
+  to_stdout(" {:<22}{} {}\n", check, check.size() > 22 ? ":" : "", detail);
   if (!fix.empty()) to_stdout("           {:<22} -> {}\n", "", fix);
 }
 

@@ -22,6 +22,7 @@ struct RenderArguments {
   std::string scenario, gallery, cells, layout, split = "test", truth = "released", arm, suite, out;
   std::uint64_t seed = 0;
   int index = 0;
+  std::vector<fs::path> plugin_path;
 };
 
 // Pictures of one size side by side, enlarged.
@@ -113,6 +114,7 @@ void add_render(CLI::App& app, int&) {
               "Which true distributions to use where released and printed ones differ",
               one_of("truth", {"released", "printed"}), with_default);
   verb.option("--seed N", arguments->seed, "Seed of the scenes", a_seed(), with_default);
+  add_plugin_path(verb, arguments->plugin_path, any_plugin);
   add_scenario_path(verb);
   verb->footer(
       "Draws the scene before the action; the mask is that of the command's true Selection.\nExample: lgabench render "

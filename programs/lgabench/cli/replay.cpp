@@ -9,6 +9,7 @@
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/gif.hpp>
+#include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/played_scenes.hpp>
 #include <lgabench/cli/watched_world.hpp>
 #include <lgabench/core/environments.hpp>
@@ -199,6 +200,7 @@ void replay(const ReplayArguments& a) {
   const bool several = a.episodes.size() > 1;
   if (ending != ".gif" && (ending != ".png" || several))
     throw InputError(several ? "replay: expected --out FILE.gif" : "replay: expected --out FILE.gif or FILE.png");
+  expect_run(a.run);
   const Catalogue catalogue = plugins_at(a.plugin_path, usual_python());
   std::vector<Played> all;
   std::string said;
@@ -243,6 +245,7 @@ void add_replay(CLI::App& app, int&) {
               required);
   verb.option("--out FILE", a->out, "FILE.gif for an animation, FILE.png for a film strip", required);
   add_plugin_path(verb, a->plugin_path, any_plugin);
+  add_scenario_path(verb);
   add_python(verb, a->python);
   verb->footer(
       "replay carries out the recorded actions on the recorded engine, without the method. Pink marks the suction "

@@ -291,6 +291,7 @@ void add_rescore(CLI::App& app, int& exit) {
       one_of("format", {"rows", "tables", "json", "csv"}), with_default);
   verb.option("--json FILE", a->json, "Also write a line of JSON for each episode (docs/formats)");
   add_plugin_path(verb, a->plugin_path);
+  add_scenario_path(verb);
   verb->footer(
       "rescore carries out the recorded actions on the recorded engine, without the method; RUN does not change. "
       "Without tolerances, physics gives the recorded verdicts. Episodes that do not end here as recorded, or whose "

@@ -39,6 +39,7 @@ struct SelectArguments {
   bool json = false, score = false, show_prompt = false, any_served = false;
   int scenes = 30;
   std::vector<std::string> names, segments, arms;
+  std::vector<fs::path> plugin_path;
 };
 
 // What is asked: the words, and the truth where a scenario has one for them.
@@ -278,6 +279,7 @@ void add_select(CLI::App& app, int&) {
   verb.option("--space SPACE", arguments->space,
               "The feature space, for a command in quotes (default: the usual one of the task's environment)",
               feature_space());
+  add_plugin_path(verb, arguments->plugin_path, any_plugin);
   add_scenario_path(verb);
   auto* score = verb.option("--score", arguments->score,
                             "With --suite: score, without a policy, how exactly the answers keep the meant objects in "

@@ -255,6 +255,7 @@ void add_verify(CLI::App& app, int& exit) {
   verb.option("RUN", a->run, "The run's directory", required);
   add_methods_in_python(verb, *a);
   add_plugin_path(verb, a->plugin_path, any_plugin);
+  add_scenario_path(verb);
   verb.option("--json", a->json, "Print JSON instead of lines");
   verb.below("Which cells");
   auto* sample =

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <optional>
+
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/leaderboard/areas.hpp>
@@ -112,6 +115,37 @@ void add_results(document::Section& section, const NamedTable& table, const fs::
   add_captioned(section, success_grid(table, arms, arm, n));
 }
 
+namespace {
+
+// What the row of a suite's table says at one number of demonstrations.
+Grid::Row steps_row(const NamedTable& table, const BoardSteps& steps) {
+  const std::string& suite = table.setting.suite;
+  const Titles titles(suite);
+  Grid::Row row{
+      {},
+      {Span::link(titles.suite(), "results/" + suite + ".md"),
+       Span(titles.arm(steps.column.arm) + (table.setting.paired() ? ", paired success" : "")),
+       Span::number(std::to_string(steps.scenarios)), Span::number(std::to_string(steps.column.demonstrations))}};
+  const auto add = [&](const std::optional<double>& success) {
+    row.cells.push_back(success ? document::TableCell(Span::number(fixed(*success))) : "–");
+  };
+  const BoardSteps::Played &truth = *steps.of(statistics::true_mask), &read = *steps.of(statistics::command_read);
+  const BoardSteps::Played* const both = steps.of(statistics::both_stage);
+  add(steps.played.front().success);
+  add(steps.labels().success);
+  add(read.success);
+  add(both ? std::optional(both->success) : std::nullopt);
+  add(truth.success);
+  row.cells.emplace_back(Span::number(
+      fmt::format("{} {}", signed_text(steps.read.difference), statistics::signed_interval(steps.read.interval))));
+  row.cells.emplace_back(Span::number(statistics::signed_interval(steps.read.over_commands)));
+  row.cells.emplace_back(Span::number(signed_text(truth.success - steps.best)));
+  add(table.undisputed ? read.undisputed : read.success);
+  return row;
+}
+
+}  // namespace
+
 Grid all_steps_grid(const Suites& suites) {
   Grid grid;
   grid.name = "steps";
@@ -131,28 +165,12 @@ Grid all_steps_grid(const Suites& suites) {
                 "undisputed"};
   grid.align = "llrrrrrrrllrr";
   for (const auto& [suite, tables] : suites) {
-    const Titles titles(suite);
+    const bool has_curve =
+        std::any_of(tables.begin(), tables.end(), [](const NamedTable& t) { return !t.curve.empty(); });
     for (const NamedTable& table : tables) {
-      const std::optional<BoardSteps>& steps = table.steps;
-      if (!steps || table.track.kind != Track::abstraction) continue;
-      Grid::Row row{
-          {},
-          {Span::link(titles.suite(), "results/" + suite + ".md"),
-           Span(titles.arm(steps->column.arm) + (table.setting.paired() ? ", paired success" : "")),
-           Span::number(std::to_string(steps->scenarios)), Span::number(std::to_string(steps->column.demonstrations))}};
-      const auto success = [&](const BoardSteps::Played* one) {
-        row.cells.push_back(one ? document::TableCell(Span::number(fixed(one->success))) : "–");
-      };
-      const BoardSteps::Played &truth = *steps->of(statistics::true_mask), &read = *steps->of(statistics::command_read);
-      for (const BoardSteps::Played* one :
-           {&steps->played.front(), &steps->labels(), &read, steps->of(statistics::both_stage), &truth})
-        success(one);
-      row.cells.emplace_back(Span::number(fmt::format("{} {}", signed_text(steps->read.difference),
-                                                      statistics::signed_interval(steps->read.interval))));
-      row.cells.emplace_back(Span::number(statistics::signed_interval(steps->read.over_commands)));
-      row.cells.emplace_back(Span::number(signed_text(truth.success - steps->best)));
-      row.cells.emplace_back(Span::number(fixed(read.undisputed.value_or(read.success))));
-      grid.rows.push_back(std::move(row));
+      if (!table.steps || table.track.kind != Track::abstraction || (has_curve && table.curve.empty())) continue;
+      if (!has_curve) grid.rows.push_back(steps_row(table, *table.steps));
+      for (const BoardSteps& one : table.curve) grid.rows.push_back(steps_row(table, one));
     }
   }
   return grid;

@@ -300,7 +300,8 @@ std::vector<NamedTable> named_tables(const std::vector<const Entry*>& table, con
     one.steps = steps_of(standing, track, one.undisputed);
     if (one.steps && setting.demonstrations.size() > 1)
       for (const int n : setting.demonstrations)
-        if (auto steps = steps_of(standing, track, {}, n)) one.curve.push_back(std::move(*steps));
+        if (auto steps = n == one.steps->column.demonstrations ? one.steps : steps_of(standing, track, {}, n))
+          one.curve.push_back(std::move(*steps));
     one.standings = named(standing, labels);
     mark_more(one.standings);
     if (all.size() > 1) continue;

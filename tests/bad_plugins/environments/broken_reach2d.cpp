@@ -38,6 +38,7 @@ class Broken final : public Plane {
     if (breaks("wins_and_fails") && result.is_success) result.failure = not_reached;
     if (breaks("ends_without_a_word")) result.terminated = true;
     if (breaks("fails_and_goes_on")) result.failure = not_reached;
+    if (breaks("word") && result.terminated && !result.is_success) result.failure = "lost_way";
     if (breaks("never_ends")) {
       result.terminated = result.is_success = false;
       result.failure = failure::goes_on;
@@ -47,8 +48,20 @@ class Broken final : public Plane {
 
   Action expert_action() const override {
     if (breaks("oracle_stops")) return {};
-    return breaks("oracle_waits") ? Action{0, 0} : Plane::expert_action();
+    if (breaks("oracle_waits")) return {0, 0};
+    is_oracle_ = true;
+    Action action = Plane::expert_action();
+    is_oracle_ = false;
+    return action;
   }
+
+  Action expert_action_for(std::uint8_t id) const override {
+    if (breaks("one_object") && !is_oracle_) throw InputError("only what is meant is taken");
+    return Plane::expert_action_for(id);
+  }
+
+ private:
+  mutable bool is_oracle_ = false;  // it asks for the target's action
 };
 
 class BrokenReach2d final : public Reach2d {

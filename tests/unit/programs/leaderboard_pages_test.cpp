@@ -9,6 +9,7 @@
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/leaderboard/board_steps.hpp>
 #include <lgabench/leaderboard/check.hpp>
+#include <lgabench/leaderboard/overview.hpp>
 #include <lgabench/leaderboard/pages.hpp>
 #include <lgabench/leaderboard/scenes.hpp>
 #include <lgabench/leaderboard/suite_page.hpp>
@@ -310,6 +311,42 @@ TEST(Board, StepsAreOfRowsWithEqualOptionsAndAddUp) {
   EXPECT_NEAR(both->both.difference, both->played[3].success - both->labels().success, 1e-12);
   EXPECT_GT(both->best, both->played[3].success);
   EXPECT_LT(both->best, 1);
+}
+
+TEST(Board, ACurveStandsForItsSuitesOtherPresets) {
+  Setting one = small_setting();
+  one.suite = "clutter";
+  one.preset = "abstraction";
+  for (Setting::Scenario& scenario : one.scenarios) scenario.arms = {"near_4"};
+  one.demonstrations = {5};
+  Setting curve = one, other = one;
+  curve.preset = "curve";
+  curve.demonstrations = {1, 5};
+  other.suite = "fetch";
+  for (Setting::Scenario& scenario : other.scenarios) scenario.arms = {"near"};
+  Tracks tracks;
+  for (const Setting& setting : {one, curve, other}) tracks[setting.name()].kind = Track::abstraction;
+  std::vector<Entry> entries;
+  for (const Setting& setting : {one, curve, other})
+    for (const char* id : {"gcbc_seg", "taken_features", "lga", "human"}) {
+      entries.push_back(replayed_entry(setting, id, setting.preset == "curve" ? .9 : .4));
+      entries.back().identity.row.id = entries.back().identity.row.name = id;
+      entries.back().identity.row.options = {{"policy", "heat_map"}};
+    }
+  const auto tables_of = [&](std::size_t i) {
+    std::vector<const Entry*> table;
+    for (std::size_t k = 4 * i; k < 4 * i + 4; ++k) table.push_back(&entries[k]);
+    return named_tables(table, {}, tracks);
+  };
+  std::vector<NamedTable> clutter = tables_of(0);
+  for (NamedTable& table : tables_of(1)) clutter.push_back(std::move(table));
+  const document::Grid grid = all_steps_grid({{"clutter", clutter}, {"fetch", tables_of(2)}});
+  ASSERT_EQ(grid.rows.size(), 3u) << "the curve's two numbers, and the other suite's one";
+  const auto text = [&](std::size_t row, std::size_t cell) { return grid.rows[row].cells[cell].text(); };
+  for (const auto& [row, n, suite] : {std::tuple(0u, "1", "clutter"), {1u, "5", "clutter"}, {2u, "5", "fetch"}})
+    EXPECT_EQ(text(row, 3), n) << suite;
+  EXPECT_GT(std::stod(text(1, 4)), .8);
+  EXPECT_LT(std::stod(text(2, 4)), .5);
 }
 
 TEST(Board, QuestionsThatNobodyWasAskedAreNoNumber) {
