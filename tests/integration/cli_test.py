@@ -160,7 +160,7 @@ class Mistakes(Case):
             *([[*words, "--seed", seed], rf"^lgabench: --seed: expected a whole number from 0 to 9223372036854775807, got {seed}$"]
               for words in (["draw-commands", "--out", "x"], ["demos", "heart", "--out", "x"], ["render", "heart"])
               for seed in ("-1", "9223372036854775808", "99999999999999999999999")),
-            (["render", "nosuch"], r'no scenario "nosuch", expected one of \d+, such as: (\w+, ){7}\w+ \(lgabench list scenarios\)$'),
+            (["render", "nosuch"], r'no scenario "nosuch", expected one of \d+, such as: (\w+, ){7}\w+ \(lgabench list scenarios\); others are found with --scenario-path or '),
             (["new-suite", "mine", "--scenarios", "nosuch"], r'no scenario "nosuch", expected one of \d+, such as: '),
             (["select", "Bring me a fruit.", "--space", "kitchen"], r'^lgabench: --space: no feature space "kitchen", expected one of: '),
             (["run", "q1", "--truth", "realeased"], r'--truth: no truth "realeased" \(did you mean "released"\?\)'),

@@ -1,9 +1,12 @@
 // Episodes of several steps, played in examples/reach2d: the loop, its records and files, and environments that break
 // their interface.
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <map>
+#include <memory>
+#include <set>
 
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/demonstrations.hpp>
@@ -15,6 +18,7 @@
 #include <lgabench/learning/network.hpp>
 #include <lgabench/learning/noisy_copies.hpp>
 #include <lgabench/learning/training.hpp>
+#include <lgabench/plugin/simple_environment.hpp>
 
 #include "altered_environment.hpp"
 #include "testing.hpp"
@@ -370,6 +374,56 @@ TEST(BrokenSteps, AStepAfterTheEndIsRefused) {
               environment->step({0, 0});
             }),
             fmt::format("step(): scene 7 of test is over after {} steps; expected a reset() before it", steps));
+}
+
+// Scenes of six discs and six squares, which nobody plays.
+class Shapes : public SimpleEnvironment {
+ public:
+  Shapes() : SimpleEnvironment(about()) {}
+
+ protected:
+  void place(Scene& /*scene*/, RandomStream /*random*/) const override {}
+  std::unique_ptr<Environment> make(const std::string& /*task*/) const override { return nullptr; }
+
+ private:
+  static EnvironmentDescription about() {
+    EnvironmentDescription about;
+    about.id = "shapes";
+    about.tasks = {{"reach", {"plane"}, {}, {}, "reach2d_red"}};
+    about.spaces = {"tabletop"};
+    for (const char* type : {"round", "square"})
+      for (const char* texture : {"red", "green", "blue", "yellow", "purple", "orange"})
+        about.things.push_back({type, texture});
+    about.most_things = 7;
+    return about;
+  }
+};
+
+TEST(SimpleEnvironments, DrawAsManyOthersAsTheFileSaysNearMissesFirst) {
+  const Shapes shapes;
+  Scenario scenario = reach();
+  scenario.environment = &shapes;
+  const auto scene_with = [&](const Json& members, int index) {
+    const Json file = scenario.json;
+    const JsonReader reader(members, "members");
+    scenario.tests.front().scenes = shapes.read_content(scenario, JsonReader(file, "file"), &reader, false);
+    return shapes.sample(scenario, {"plane", "test", "test", 0}, index);
+  };
+  const auto is_near = [](const SceneObject& one) { return one.object_type == "round" || one.texture == "red"; };
+  std::set<std::size_t> counts;
+  for (int i = 0; i < 20; ++i) {
+    const Scene all = scene_with(Json::object(), i), near = scene_with({{"near_miss", true}}, i);
+    EXPECT_EQ(all.objects.size(), 7u);
+    EXPECT_TRUE(std::all_of(near.objects.begin(), near.objects.end(), is_near)) << "five discs, and the red square";
+    EXPECT_EQ(scene_with({{"distractors", {0, 0}}}, i).objects.size(), 1u);
+    counts.insert(scene_with({{"distractors", {2, 4}}, {"near_miss", true}}, i).objects.size());
+  }
+  EXPECT_EQ(counts, (std::set<std::size_t>{3, 4, 5}));
+  for (const auto& [members, said] :
+       {std::pair<Json, const char*>{{{"distractors", {2}}}, "/distractors: expected [fewest, most]"},
+        {{{"distractors", {2, 7}}}, "/distractors/1: expected"},
+        {{{"near_miss", "round"}}, "/near_miss: expected"}})
+    EXPECT_SAYS(message_of<InputError>([&, &given = members] { scene_with(given, 0); }), said);
 }
 
 }  // namespace

@@ -27,7 +27,8 @@ TEST(NoneNamed, SuggestsAndLists) {
   EXPECT_EQ(none_named("scenario", "hart", {"heart", "letter"}), "no scenario \"hart\" (did you mean \"heart\"?)");
   EXPECT_EQ(none_named("layout", "plane", {}), "no layout \"plane\", there is none");
   EXPECT_EQ(none_named("scenario", "moon", {"heart", "letter"}),
-            "no scenario \"moon\", expected one of: heart, letter");
+            "no scenario \"moon\", expected one of: heart, letter; others are found with --scenario-path or "
+            "$LGABENCH_SCENARIO_PATH");
 }
 
 TEST(NoneNamed, OfManyNamesSome) {
@@ -37,7 +38,7 @@ TEST(NoneNamed, OfManyNamesSome) {
   EXPECT_EQ(
       none_named("scenario", "best_x", many),
       "no scenario \"best_x\", expected one of 101, such as: best_of_all, 100, 101, 102, 103, 104, 105, 106 (lgabench "
-      "list scenarios)");
+      "list scenarios); others are found with --scenario-path or $LGABENCH_SCENARIO_PATH");
   EXPECT_EQ(none_named("row", "moon", many).find("lgabench list"), std::string::npos) << "no command lists these";
   EXPECT_EQ(some_of({"a", "b"}), "a, b");
   EXPECT_EQ(some_of(many, " | "), "100 | 101 | 102 | 103 | 104 | 105 | 106 | 107 | ... (93 more)");

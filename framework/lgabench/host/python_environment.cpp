@@ -244,6 +244,11 @@ class PythonEnvironment : public SimpleEnvironment {
     return declared_.scenario_members;
   }
   std::vector<std::string> scene_members(const TaskInfo& /*task*/) const override { return declared_.scene_members; }
+  std::shared_ptr<const SceneContent> read_content(const Scenario& scenario, const JsonReader& file,
+                                                   const JsonReader* /*scenes*/, bool /*training*/) const override {
+    expect_sets(scenario, file);
+    return std::make_shared<SceneContent>();  // the class reads its members itself
+  }
 
   Scene sample(const Scenario& scenario, const SceneRequest& request, int index) const override {
     const Things things = things_for(scenario, request, index);

@@ -24,7 +24,9 @@ struct EnvironmentDescription {
 };
 
 /// An environment of commands that mean one of several things. Its scenes hold one target, drawn from what the command
-/// means, and others, drawn from what it does not; ids are permuted.
+/// means, and others, drawn from what it does not; ids are permuted. The members "distractors" of an arm or of
+/// training, [fewest, most], says how many others (by default as many as most_things allows), "near_miss": true that
+/// those come first that share the target's object type or texture.
 class SimpleEnvironment : public EnvironmentType {
  public:
   const std::string& id() const override { return about_.id; }
@@ -38,8 +40,10 @@ class SimpleEnvironment : public EnvironmentType {
   /// By the bounds of the numbers that are an action's first place. The picture's middle where actions have no place.
   Vec2 in_picture(Vec3 point_m) const override;
   std::vector<std::string> scenario_members(const TaskInfo& /*task*/) const override { return {}; }
-  std::vector<std::string> scene_members(const TaskInfo& /*task*/) const override { return {}; }
-  /// @throws InputError for a command that says which of several objects is meant.
+  std::vector<std::string> scene_members(const TaskInfo& /*task*/) const override {
+    return {"distractors", "near_miss"};
+  }
+  /// @throws InputError for a command that says which of several objects is meant, and for members of another form.
   std::shared_ptr<const SceneContent> read_content(const Scenario& scenario, const JsonReader& file,
                                                    const JsonReader* scenes, bool training) const override;
   Scene sample(const Scenario& scenario, const SceneRequest& request, int index) const override;
@@ -50,6 +54,9 @@ class SimpleEnvironment : public EnvironmentType {
 
  protected:
   explicit SimpleEnvironment(EnvironmentDescription about) : about_(std::move(about)) {}
+
+  /// @throws InputError for a command that says which of several objects is meant.
+  void expect_sets(const Scenario& scenario, const JsonReader& file) const;
 
   /// What a scene may have as its target, and what its command does not mean.
   struct Things {
