@@ -17,9 +17,16 @@ class NoMethod(Exception):
     """The file has no such method; one line for a person."""
 
 
+# Attributes that lgabench reads, of every class and of some.
+_READ = {"id", "version", "summary", "asks", "options", "questionnaire"}
+_READ_OF = {"perturbation": {"levels", "changes", "may_change", "named"},
+            "environment": {"tasks", "failures", "space", "things", "actions", "state", "picture", "most_instances", "places", "rotations",
+                            "packages", "scenario_members", "scene_members", "network", "memory_gib", "time_limit_s"}}
+
+
 def _literals(body):
-    """Names that are assigned something written out, in the body of a class."""
-    found = {}
+    """Names that are assigned something written out, in the body of a class, and those that are assigned something else."""
+    found, computed = {}, set()
     for statement in body:
         if isinstance(statement, ast.Assign):
             targets, value = statement.targets, statement.value
@@ -32,8 +39,8 @@ def _literals(body):
                 try:
                     found[target.id] = ast.literal_eval(value)
                 except (ValueError, TypeError, SyntaxError):
-                    pass  # computed: not one of ours, or its check says that it is missing
-    return found
+                    computed.add(target.id)
+    return found, computed
 
 
 def _imports(tree):
@@ -184,7 +191,7 @@ def describe(written):
     classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
     if class_name not in classes:
         raise NoMethod(f"{file}: no class {class_name}, it has: {', '.join(classes) or 'none'}")
-    found = _literals(classes[class_name].body)
+    found, computed = _literals(classes[class_name].body)
     real = file.resolve()  # where it runs and imports from: a link's own folder has nothing to do with it
     options = found.get("options", {})
     if not isinstance(options, dict):
@@ -202,6 +209,8 @@ def describe(written):
         raise NoMethod(f"{file}: questionnaire: expected True or False")
     functions = {node.name for node in classes[class_name].body if isinstance(node, ast.FunctionDef)}
     kind = "environment" if {"reset", "step"} <= functions else "perturbation" if "perceive" in functions else "perceiver" if "read" in functions else "method"
+    for name in sorted(computed & (_READ | _READ_OF.get(kind, set()))):
+        raise NoMethod(f"{file}: {name}: expected a literal, which can be read without running the file")
     said = _environment(found, file) if kind == "environment" else None
     names = said["packages"] if said else []
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):

@@ -41,7 +41,10 @@ class PluginEnvironments(Case):
         self.assertIn("identical", self.call("verify", "run", *path).stdout)
         cell = next(self.dir.glob("run/cells/*/episodes.jsonl")).parent.name
         self.call("replay", "run", f"{cell}/test/0", *path, "--out", "episode.png")
-        self.assertIn("reach_blind", self.call("info", "reach2d", *path).stdout)
+        said = self.call("info", "reach2d", *path).stdout
+        for words in ("reach_blind", "steps       20 at most", "state       down  -0.5 to 0.5", "spaces      tabletop", "picture     "):
+            self.assertIn(words, said)
+        self.assertNotRegex(said, r"failures *\n")
         self.assertIn("reach2d", self.call("list", "environments", "--short", *path).stdout)
 
     def test_one_without_an_engine_plugin_says_so(self):

@@ -69,6 +69,12 @@ class PythonEnvironments(PythonCase):
         self.assertIn("reach_blind", self.call("info", "my_world", *self.path).stdout)
         self.assertIn("my_world", self.call("list", "environments", "--short", *self.path).stdout)
 
+    def test_what_is_computed_is_said(self):
+        with self.changed("most_instances = ", "most_instances = 0 + "):
+            said = self.call("check-plugin", WORD, "--python", PYTHON, expect=1).stdout
+            self.assertIn("most_instances: expected a literal, which can be read without running the file", said)
+            self.assertIn("docs/simulators.md for an environment", said)
+
     def test_planning_and_reports_start_no_simulator(self):
         self.run_suite("--no-reference")
         self.change("import numpy\n", "import numpy\nraise SystemExit('it was started')\n")

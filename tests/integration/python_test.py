@@ -486,7 +486,9 @@ class PythonMethods(Case):
                            "bad.py:A": "bad.py", "named.py:A": "id \"Upper\"", "options.py:A": "options",
                            "sets.py:A": "sets.py: options: expected values that JSON has",
                            "endless.py:A": "endless.py: options: expected values that JSON has",
-                           "asks.py:A": "asks.py: questionnaire: expected True or False"}.items():
+                           "asks.py:A": "asks.py: questionnaire: expected True or False",
+                           "computed.py:A": "computed.py: options: expected a literal, which can be read without running the file"}.items():
+            (self.dir / "computed.py").write_text("class A:\n    options = dict(x={'default': 1, 'help': '', 'source': ''})\n")
             (self.dir / "asks.py").write_text("class A:\n    questionnaire = 'yes'\n")
             (self.dir / "bad.py").write_text("class A(")
             (self.dir / "named.py").write_text("class A:\n    id = 'Upper'\n")

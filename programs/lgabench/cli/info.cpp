@@ -111,8 +111,12 @@ Json to_json(const Suite& suite) {
 Json to_json(const EnvironmentType& environment) {
   Json tasks = Json::array();
   for (const TaskInfo& task : environment.tasks()) {
-    tasks.push_back(
-        {{"id", task.id}, {"layouts", task.layouts}, {"failures", task.failures}, {"example", task.example}});
+    tasks.push_back({{"id", task.id},
+                     {"layouts", task.layouts},
+                     {"failures", task.failures},
+                     {"example", task.example},
+                     {"most_steps", task.most_steps},
+                     {"state", lgabench::to_json(environment.state_of(task))}});
     if (task.second) tasks.back()["second"] = {{"id", task.second->id}, {"phrase", task.second->phrase}};
   }
   return {{"kind", "environment"},
@@ -120,23 +124,35 @@ Json to_json(const EnvironmentType& environment) {
           {"tasks", tasks},
           {"failures", environment.failures()},
           {"has_engine", environment.has_engine()},
+          {"spaces", environment.spaces()},
+          {"picture", {environment.picture_size().rows, environment.picture_size().columns}},
           {"action", lgabench::to_json(environment.action_space())}};
+}
+
+std::string range_of(const ActionNumber& number) {
+  return fmt::format("{} to {}{}{}", number.low, number.high, number.unit.empty() ? "" : " ", number.unit);
 }
 
 void print_info(const EnvironmentType& environment) {
   to_stdout("{}, an environment\n", environment.id());
   for (const TaskInfo& task : environment.tasks()) {
-    to_stdout("  task        {}\n    layouts     {}\n    failures    {}\n    example     {}\n", task.id,
-              fmt::join(task.layouts, ", "), fmt::join(task.failures, ", "), task.example);
+    to_stdout("  task        {}\n    layouts     {}\n", task.id, fmt::join(task.layouts, ", "));
+    if (!task.failures.empty()) to_stdout("    failures    {}\n", fmt::join(task.failures, ", "));
+    to_stdout("    example     {}\n", task.example);
+    if (task.most_steps > 1) to_stdout("    steps       {} at most\n", task.most_steps);
+    for (const StateNumber& number : environment.state_of(task))
+      to_stdout("    state       {}  {}\n", number.name, range_of(number));
     if (task.second) to_stdout("    second set  {}, {}\n", task.second->id, task.second->phrase);
   }
   if (!environment.has_engine()) to_stdout("  engine      {}: no engine plugin\n", own_engine);
-  to_stdout("  failures    {}\n  action\n", fmt::join(environment.failures(), ", "));
+  const PictureSize picture = environment.picture_size();
+  to_stdout("  spaces      {}\n  picture     {} x {}\n  failures    {}\n  action\n",
+            fmt::join(environment.spaces(), ", "), picture.rows, picture.columns,
+            fmt::join(environment.failures(), ", "));
   std::size_t width = 0;
   for (const ActionNumber& number : environment.action_space().numbers) width = std::max(width, number.name.size());
   for (const ActionNumber& number : environment.action_space().numbers)
-    to_stdout("    {:<{}}  {} to {}{}{}\n", number.name, width, number.low, number.high, number.unit.empty() ? "" : " ",
-              number.unit);
+    to_stdout("    {:<{}}  {}\n", number.name, width, range_of(number));
 }
 
 void print_reference_row(const Json& row) {
