@@ -96,7 +96,7 @@ Json suite_data(const std::vector<NamedTable>& tables, const BoardScenes& scenes
       for (const Json& arm : scenario.at("arms")) setting["titles"][arm.get<std::string>()] = titles.arm(arm);
     }
     settings.push_back(std::move(setting));
-    tabs.push_back({{"title", statistics::capital(to_string(table.ranking))},
+    tabs.push_back({{"title", section_title(table, tables)},
                     {"sections", Json::array({fmt::format("table{}", tabs.size() + 1)})}});
     for (const NamedStanding& s : table.standings) {
       const Entry& entry = *s.entry;

@@ -321,7 +321,6 @@ std::string title_of(const NamedTable& table) {
   return fmt::format("{}, {}", Titles(table.setting.suite).suite(), to_string(table.ranking));
 }
 
-// What a page calls it: its ranking, and its preset where another table of the page has that ranking too.
 std::string section_title(const NamedTable& table, const std::vector<NamedTable>& tables) {
   const std::string ranking = statistics::capital(to_string(table.ranking));
   const auto alike = std::count_if(tables.begin(), tables.end(),
