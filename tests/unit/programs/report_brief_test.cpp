@@ -44,6 +44,28 @@ TEST(Brief, ManyMethodsAreEightTheFirstAndTheReadersOwnAmongThem) {
                                              "More rows in the report: 3."}));
 }
 
+// Who asks for errors of the Selection sees what they cost; where rows do not fit, in the report.
+TEST(Brief, ErrorsOfTheSelectionAreRowsWhereTheyFit) {
+  for (const int wrong : {1, 9}) {
+    FabricatedRun run;
+    run.add({"human", 20});
+    for (int i = 1; i <= wrong; ++i) {
+      Spec spec{fmt::format("human+missing={}", i / 10.), 10};
+      spec.provenance = "truth";
+      spec.selection_errors = {{"missing", i / 10.}};
+      run.add(spec);
+    }
+    std::vector<std::string> notes;
+    const std::vector<std::string> lines = lines_of(run, &notes);
+    const auto found = std::find_if(lines.begin(), lines.end(), [](const std::string& line) {
+      return line.find("missing=0.1") != line.npos && line.find(" 0.50 ") != line.npos;
+    });
+    EXPECT_EQ(found != lines.end(), wrong == 1);
+    EXPECT_EQ(notes.empty(), wrong == 1);
+    if (wrong == 9) EXPECT_EQ(notes.front(), "More rows in the report: 9.");
+  }
+}
+
 TEST(Brief, NumbersOfDemonstrationsStandSideBySide) {
   FabricatedRun run;
   for (const int n : {10, 20}) run.add({"lga", n, "heart", n});
