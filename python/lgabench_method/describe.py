@@ -17,11 +17,15 @@ class NoMethod(Exception):
     """The file has no such method; one line for a person."""
 
 
-# Attributes that lgabench reads, of every class and of some.
-_READ = {"id", "version", "summary", "asks", "options", "questionnaire"}
-_READ_OF = {"perturbation": {"levels", "changes", "may_change", "named"},
-            "environment": {"tasks", "failures", "space", "things", "actions", "state", "picture", "most_instances", "places", "rotations",
-                            "packages", "scenario_members", "scene_members", "network", "memory_gib", "time_limit_s"}}
+# Attributes that lgabench reads: of a perturbation, of an environment (as they are, with a default, lists of tuples), of each kind.
+_OF_AXIS = ("levels", "changes", "may_change", "named")
+_OF_ENVIRONMENT = ("tasks", "failures", "space", "picture", "most_instances")
+_DEFAULTS = {"places": [], "rotations": [], "packages": [], "scenario_members": [], "scene_members": [], "network": False,
+             "memory_gib": 4, "time_limit_s": 120}
+_NUMBER = ("name", "unit", "low", "high")
+_TUPLES = {"actions": _NUMBER, "state": _NUMBER, "things": ("object_type", "texture")}
+_READ = {"perturbation": {*_OF_AXIS}, "environment": {*_OF_ENVIRONMENT, *_DEFAULTS, *_TUPLES}}
+_READ_OF_ALL = {"id", "version", "summary", "asks", "options", "questionnaire"}
 
 
 def _literals(body):
@@ -106,12 +110,9 @@ def _pairs_of(found, name, members):
 
 def _environment(found, file):
     """What an environment says of itself; lgabench checks it (host/python_environment.cpp)."""
-    number, defaults = ("name", "unit", "low", "high"), {
-        "places": [], "rotations": [], "packages": [], "scenario_members": [], "scene_members": [], "network": False,
-        "memory_gib": 4, "time_limit_s": 120}
-    said = {name: found[name] for name in ("tasks", "failures", "space", "picture", "most_instances") if name in found}
-    said.update({name: found.get(name, default) for name, default in defaults.items()})
-    for name, members in (("actions", number), ("state", number), ("things", ("object_type", "texture"))):
+    said = {name: found[name] for name in _OF_ENVIRONMENT if name in found}
+    said.update({name: found.get(name, default) for name, default in _DEFAULTS.items()})
+    for name, members in _TUPLES.items():
         if name in found or name == "state":
             said[name] = _pairs_of(found, name, members)
     try:
@@ -153,7 +154,7 @@ def _text(found, name, default, file):
 
 def _axis(found, file):
     """What a perturbation declares; lgabench checks it."""
-    declared = {name: found[name] for name in ("levels", "changes", "may_change", "named") if name in found}
+    declared = {name: found[name] for name in _OF_AXIS if name in found}
     try:
         return json.loads(json.dumps(declared, allow_nan=False))
     except (TypeError, ValueError) as error:
@@ -209,7 +210,7 @@ def describe(written):
         raise NoMethod(f"{file}: questionnaire: expected True or False")
     functions = {node.name for node in classes[class_name].body if isinstance(node, ast.FunctionDef)}
     kind = "environment" if {"reset", "step"} <= functions else "perturbation" if "perceive" in functions else "perceiver" if "read" in functions else "method"
-    for name in sorted(computed & (_READ | _READ_OF.get(kind, set()))):
+    for name in sorted(computed & (_READ_OF_ALL | _READ.get(kind, set()))):
         raise NoMethod(f"{file}: {name}: expected a literal, which can be read without running the file")
     said = _environment(found, file) if kind == "environment" else None
     names = said["packages"] if said else []

@@ -42,9 +42,9 @@ class PythonCase(case.Case):
         finally:
             self.file.write_text(before)
 
-    def run_suite(self, *more, expect=0):
-        return self.call("run", "mine/my_world_suite.json", "--answers", "none", "--methods", "human", "--demos", "1", "--seeds", "0",
-                         "--episodes", "2", "--set", "human.epochs=1", "--jobs", "1", "--engines", "own", "--out", "run", *self.path, *more, expect=expect)
+    def run_suite(self, *more, seed=0, out="run", expect=0):
+        return self.call("run", "mine/my_world_suite.json", "--answers", "none", "--methods", "human", "--demos", "1", "--seeds", seed,
+                         "--episodes", "2", "--set", "human.epochs=1", "--jobs", "1", "--engines", "own", "--out", out, *self.path, *more, expect=expect)
 
 
 class PythonEnvironments(PythonCase):
@@ -117,8 +117,7 @@ class PythonEnvironments(PythonCase):
         self.call("check-scenario", "mine/my_world_red.json", "--scenes", "1", "--plugin-path", WORD)
         self.environment["LGABENCH_SCENARIO_PATH"] = found
         file.write_text(json.dumps({**space, "object_types": ["round", "square"]}))
-        self.call("run", "mine/my_world_suite.json", "--answers", "none", "--methods", "human", "--demos", "1", "--seeds", "1", "--episodes", "2",
-                  "--set", "human.epochs=1", "--engines", "own", "--no-reference", "--out", "other", *self.path)
+        self.run_suite("--no-reference", seed=1, out="other")
         self.assertIn('different files of the feature space "discs"', self.call("merge", "both", "run", "other", expect=2).stderr)
         self.assertIn("same settings, other data or versions", self.run_suite("--no-reference", "--resume", expect=2).stderr)
         file.write_text(json.dumps({**space, "object_types": ["round", "round"]}))

@@ -86,10 +86,8 @@ constexpr Remedies of_environment{
     "reset() must free the memory of the last episode"};
 
 // Scenes of one task, forwards and twice backwards. Returns their bytes.
-std::string judge_task(const TaskInfo& task_info, const std::optional<PluginInfo>& engine, int most_lost,
+std::string judge_task(const TaskInfo& task_info, const Scenario& scenario, Environment& environment, int most_lost,
                        const Remedies& remedies, CheckReport& report) {
-  const Scenario scenario = load_scenario(task_info.example);
-  const auto environment = make_environment(scenario, load_engine(engine));
   const std::string& task = task_info.id;
   std::vector<Scene> scenes;
   std::vector<Played> forwards;
@@ -100,7 +98,7 @@ std::string judge_task(const TaskInfo& task_info, const std::optional<PluginInfo
   for (int i = 0; i < scenes_a_task; ++i) {
     scenes.push_back(test_scene(scenario, task_info.layouts[static_cast<std::size_t>(i) % task_info.layouts.size()],
                                 scenario.tests.front().id, engine_seed, i));
-    forwards.push_back(play(*environment, scenes.back()));
+    forwards.push_back(play(environment, scenes.back()));
     if (!forwards.back().success) {
       ++lost;
       last_lost = forwards.back().failure;
@@ -118,7 +116,7 @@ std::string judge_task(const TaskInfo& task_info, const std::optional<PluginInfo
   std::string differs;
   const auto backwards = [&] {
     for (std::size_t i = scenes.size(); i-- > 0;)
-      if (play(*environment, scenes[i]).bytes != forwards[i].bytes) differs = "a scene played again ended differently";
+      if (play(environment, scenes[i]).bytes != forwards[i].bytes) differs = "a scene played again ended differently";
   };
   backwards();
   const long long before = ProcessState::now().heap_bytes;
@@ -131,19 +129,17 @@ std::string judge_task(const TaskInfo& task_info, const std::optional<PluginInfo
 }
 
 // What else may be taken ends the episode by a word of the environment's own, or wins: the row random_object does so.
-void judge_others(const TaskInfo& task, const std::optional<PluginInfo>& engine, CheckReport& report) {
-  const Scenario scenario = load_scenario(task.example);
-  const auto environment = make_environment(scenario, load_engine(engine));
+void judge_others(const TaskInfo& task, const Scenario& scenario, Environment& environment, CheckReport& report) {
   std::set<std::string> ends;
   for (int i = 0; i < scenes_a_task; ++i) {
     const Scene scene = test_scene(scenario, task.layouts.front(), scenario.tests.front().id, engine_seed, i);
     std::vector<std::uint8_t> ids;
-    for (const Instance& one : environment->reset(scene).instances)
+    for (const Instance& one : environment.reset(scene).instances)
       if (!is_place(one.object_type)) ids.push_back(one.id);
     if (ids.empty()) continue;
     const std::uint8_t id = ids[static_cast<std::size_t>(i) % ids.size()];
     StepResult result;
-    do result = environment->step(environment->expert_action_for(id));
+    do result = environment.step(environment.expert_action_for(id));
     while (!result.terminated && !result.truncated);
     ends.insert(result.failure);
   }
@@ -155,9 +151,10 @@ constexpr int map_rows = 32, map_columns = 64;
 
 void judge_description(const EnvironmentType& environment, CheckReport& report) {
   const PictureSize size = environment.picture_size();
+  const std::vector<std::string> known = feature_space_ids();
   for (const std::string& space : environment.spaces())
-    if (!contains(feature_space_ids(), space))
-      report.problem("spaces", none_named("feature space", space, feature_space_ids()),
+    if (!contains(known, space))
+      report.problem("spaces", none_named("feature space", space, known),
                      "name spaces that are there: NAME.json beside the scenarios");
   report.judge("description", environment.tasks().empty() ? "it has no task" : "",
                fmt::format("{} task(s), an action of {} numbers, {} x {} pixels", environment.tasks().size(),
@@ -175,10 +172,8 @@ void judge_description(const EnvironmentType& environment, CheckReport& report) 
 }
 
 // Sampled twice, and drawn as reset() shows them.
-void judge_scenes(const EnvironmentType& environment, const TaskInfo& task, const std::optional<PluginInfo>& engine,
-                  CheckReport& report) {
-  const Scenario scenario = load_scenario(task.example);
-  const auto played = make_environment(scenario, load_engine(engine));
+void judge_scenes(const EnvironmentType& environment, const TaskInfo& task, const Scenario& scenario,
+                  Environment& played, CheckReport& report) {
   std::string fault;
   for (const std::string& layout : task.layouts)
     for (int i = 0; i < scenes_a_task && fault.empty(); ++i) {
@@ -186,7 +181,7 @@ void judge_scenes(const EnvironmentType& environment, const TaskInfo& task, cons
       const Scene scene = scene_of();
       if (scene.hash() != scene_of().hash())
         fault = fmt::format("scene {} of {} differs the second time", i, layout);
-      else if (bytes_of(environment.draw(scene)) != bytes_of(played->reset(scene)))
+      else if (bytes_of(environment.draw(scene)) != bytes_of(played.reset(scene)))
         fault = fmt::format("draw() shows scene {} of {} otherwise than reset()", i, layout);
     }
   report.judge("scenes, " + task.id, fault, "the same scene the second time, drawn as reset() shows it",
@@ -222,10 +217,12 @@ CheckReport check_environment(const PluginInfo& plugin, const std::optional<Plug
     judge_description(environment, report);
     for (const TaskInfo& task : environment.tasks()) {
       begins("scenes of " + task.example);
-      judge_scenes(environment, task, engine, report);
-      all += judge_task(task, engine, 0, of_environment, report);
+      const Scenario scenario = load_scenario(task.example);
+      const auto played = make_environment(scenario, load_engine(engine));
+      judge_scenes(environment, task, scenario, *played, report);
+      all += judge_task(task, scenario, *played, 0, of_environment, report);
       begins("any object in scenes of " + task.example);
-      judge_others(task, engine, report);
+      judge_others(task, scenario, *played, report);
     }
     if (plugin.python.is_null()) judge_leftovers(report, [&at_first] { return ProcessState::now().beyond(at_first); });
   });
@@ -240,7 +237,9 @@ CheckReport check_engine(const PluginInfo& engine, const std::string& environmen
     for (const TaskInfo& task : environment.empty() ? installed_tasks() : find_environment(environment).tasks()) {
       begins("scenes of " + task.example);
       constexpr int most_lost = 1;  // an engine may grip amiss
-      all += judge_task(task, engine, most_lost, of_engine, report);
+      const Scenario scenario = load_scenario(task.example);
+      const auto played = make_environment(scenario, load_engine(engine));
+      all += judge_task(task, scenario, *played, most_lost, of_engine, report);
     }
   });
 }

@@ -28,14 +28,10 @@ namespace {
 // A name or a message as tables, pages and terminals may show it: it comes from a plugin, or from somebody else's run.
 std::string shown(const JsonReader& text) { return one_line(text.string()); }
 
-// The failures of an environment beside those that all runs know: of its tasks and, of one that is a plugin's, all.
-// None where it is not there.
+// The failures of the tasks of one of lgabench's own environments, beside those that all runs know.
 std::set<std::string> further_words(const std::string& environment) {
-  const EnvironmentType* const type = environment_if_there(environment);
-  if (!type) return {};
   std::set<std::string> words;
-  if (!contains(environment_ids(), environment)) words.insert(type->failures().begin(), type->failures().end());
-  for (const TaskInfo& task : type->tasks()) {
+  for (const TaskInfo& task : find_environment(environment).tasks()) {
     if (task.most_steps > 1) words.insert(failure::goes_on);
     words.insert(task.failures.begin(), task.failures.end());
   }
@@ -49,9 +45,9 @@ bool is_word(const std::string& text) {
 
 void read_episodes(const fs::path& file, CellResult& cell) {
   std::map<std::string, std::map<int, Episode>> played;
-  const std::set<std::string> own = further_words(cell.environment);
-  const std::vector<std::string> words = failure_words(own);
   const bool any_word = cell.configuration.has_plugin_environment();  // which may not be there to ask
+  std::vector<std::string> words;
+  if (!any_word) words = failure_words(further_words(cell.environment));
   int line = 0;
   for (const Json& json : parse_json_lines(read_file(file, Links::refused), file.string())) {
     const JsonReader reader(json, fmt::format("{}: line {}", file.string(), ++line));

@@ -192,14 +192,15 @@ std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
     if (!run_workers(1, task, pool, events)) throw InputError("interrupted");
   };
   use(both[0]);
-  if (both[0].ended_well()) {
+  const bool ended_well = both[0].ended_well();
+  if (ended_well) {
     if (!a.json) to_stderr("the same once more in a second process\n");
     use(both[1]);
   }
 
   const CheckReport first = both[0].found();
   report.findings.insert(report.findings.end(), first.findings.begin(), first.findings.end());
-  if (!both[0].ended_well()) {
+  if (!ended_well) {
     report_end(both[0], a.timeout_s, report);
     return watching.printed();
   }

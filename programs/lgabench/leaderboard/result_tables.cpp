@@ -94,29 +94,6 @@ void add_captioned(document::Section& section, Grid grid) {
   section.add<Grid>(reading, std::move(grid));
 }
 
-}  // namespace
-
-void add_results(document::Section& section, const NamedTable& table, const fs::path& board) {
-  const Setting& setting = table.setting;
-  section.add<Paragraph>(
-      reading,
-      {{what_was_played(setting) + " Ranks, arms and episodes: ",
-        Span::link(Titles(setting.suite).suite(), (board / (setting.suite + ".html")).generic_string()), "."}});
-  if (table.standings.empty()) return;
-  if (table.steps) {
-    add_captioned(section, steps_grid(*table.steps, setting.suite, setting.name() + "_steps"));
-    if (!table.curve.empty()) add_captioned(section, curve_grid(table.curve, setting.suite, setting.name() + "_curve"));
-    if (table.undisputed) section.add<Paragraph>(reading, {{words_of(*table.undisputed)}});
-  }
-  const std::vector<std::string> arms = arms_of(setting);
-  auto [arm, n] = main_column(setting);
-  if (!contains(arms, arm))  // a preset of before the suite had it
-    arm = table.track.arms.empty() ? arms.back() : table.track.arms.front();
-  add_captioned(section, success_grid(table, arms, arm, n));
-}
-
-namespace {
-
 // What the row of a suite's table says at one number of demonstrations.
 Grid::Row steps_row(const NamedTable& table, const BoardSteps& steps) {
   const std::string& suite = table.setting.suite;
@@ -145,6 +122,25 @@ Grid::Row steps_row(const NamedTable& table, const BoardSteps& steps) {
 }
 
 }  // namespace
+
+void add_results(document::Section& section, const NamedTable& table, const fs::path& board) {
+  const Setting& setting = table.setting;
+  section.add<Paragraph>(
+      reading,
+      {{what_was_played(setting) + " Ranks, arms and episodes: ",
+        Span::link(Titles(setting.suite).suite(), (board / (setting.suite + ".html")).generic_string()), "."}});
+  if (table.standings.empty()) return;
+  if (table.steps) {
+    add_captioned(section, steps_grid(*table.steps, setting.suite, setting.name() + "_steps"));
+    if (!table.curve.empty()) add_captioned(section, curve_grid(table.curve, setting.suite, setting.name() + "_curve"));
+    if (table.undisputed) section.add<Paragraph>(reading, {{words_of(*table.undisputed)}});
+  }
+  const std::vector<std::string> arms = arms_of(setting);
+  auto [arm, n] = main_column(setting);
+  if (!contains(arms, arm))  // a preset of before the suite had it
+    arm = table.track.arms.empty() ? arms.back() : table.track.arms.front();
+  add_captioned(section, success_grid(table, arms, arm, n));
+}
 
 Grid all_steps_grid(const Suites& suites) {
   Grid grid;

@@ -42,11 +42,13 @@ std::string amount(double value) { return value == 0 ? "–" : fixed(value, valu
 // differ (one row's default is another's variant); then what else tells them apart.
 std::vector<NamedStanding> named(const std::vector<Standing>& standings, const Labels& words) {
   std::map<std::pair<std::string, std::string>, std::set<Json>> values;  // by id and option
-  std::set<std::string> sources;                                         // of recorded answers
-  for (const Standing& s : standings) {
-    const auto* const from = std::get_if<RecordedAnswers>(&s.entry->identity.answers);
-    if (from && !s.entry->identity.row.is_reference()) sources.insert(from->source);
-  }
+  const auto source_of = [](const Identity& identity) {                  // of recorded answers; else ""
+    const auto* const from = std::get_if<RecordedAnswers>(&identity.answers);
+    return from && !identity.row.is_reference() ? from->source : "";
+  };
+  std::set<std::string> sources;
+  for (const Standing& s : standings) sources.insert(source_of(s.entry->identity));
+  sources.erase("");
   for (const Standing& s : standings)
     for (const auto& [option, value] : s.entry->identity.row.options.items())
       values[{s.entry->identity.row.own_name(), option}].insert(value);
@@ -72,9 +74,8 @@ std::vector<NamedStanding> named(const std::vector<Standing>& standings, const L
     s.label = label_of(words, *s.entry, options);
     s.policy = policy_label(words, *s.entry);
     // One model's answers to all commands, where "recorded" may be several models'.
-    const auto* from = std::get_if<RecordedAnswers>(&identity.answers);
-    if (sources.size() > 1 && from && from->source != "recorded" && !s.is_reference())
-      s.label += ", answers " + spaced(from->source);
+    const std::string source = source_of(identity);
+    if (sources.size() > 1 && !source.empty() && source != "recorded") s.label += ", answers " + spaced(source);
     ++labelled[{s.label, s.policy}];
   }
   for (NamedStanding& s : all) {

@@ -282,15 +282,15 @@ Brief brief(const Material& material) {
   Brief brief;
   const std::vector<Table>& tables = material.summary.tables;
   const Table all = tables.empty() ? Table() : tables.front();
-  const bool shows_errors = all.methods(mean_scenario).size() <= most_methods;  // else they are in the report alone
-  const Table table = shows_errors ? all : all.without_errors();
+  const std::size_t rows = all.methods(mean_scenario).size();
+  const Table table = rows <= most_methods ? all : all.without_errors();  // which are then in the report alone
   if (const auto main = main_column(table, about_suite(material.run.suite, material.run.record.about))) {
     const std::vector<std::string> methods = table.methods(mean_scenario), references = table.references(mean_scenario),
                                    others = most_compared(methods, most_methods - 1);
     std::vector<std::string> ids;
     for (const std::string& id : methods)
       if (id == methods.front() || std::count(others.begin(), others.end(), id) > 0) ids.push_back(id);
-    const std::size_t left_out = all.methods(mean_scenario).size() - ids.size();
+    const std::size_t left_out = rows - ids.size();
     for (const std::string& id : references)
       if (const ReferenceRow* row = find_reference_row(id); row && row->below_it) ids.push_back(id);
     for (const Shown shown : {Shown::intervals, Shown::rates, Shown::main_and_mean}) {
