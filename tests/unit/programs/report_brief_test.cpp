@@ -62,7 +62,9 @@ TEST(Brief, ErrorsOfTheSelectionAreRowsWhereTheyFit) {
     });
     EXPECT_EQ(found != lines.end(), wrong == 1);
     EXPECT_EQ(notes.empty(), wrong == 1);
-    if (wrong == 9) EXPECT_EQ(notes.front(), "More rows in the report: 9.");
+    if (wrong == 9) {
+      EXPECT_EQ(notes.front(), "More rows in the report: 9.");
+    }
   }
 }
 
