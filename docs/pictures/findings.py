@@ -19,7 +19,6 @@ BOARD, MASK = "On the board: leaderboard", "Ablation, sees the mask of φ̂, sce
 PICTURE, RANDOM = "Ablation, sees the picture, scenes from the truth", "Random visible object"
 CURVE = "On the board: curve"
 RIGHT, SEEN, NEW = "The right φ̂", "seen, 7 commands", "unseen, 7 commands"
-UNHEARD, SELECTED = "On the board: abstraction_unheard", "Selected by LGA, answers claude track|heat map"
 AREAS, NETWORK, LIGHT = "Findings", "Perturbations with", "`light_intensity`"
 FIGURES = {
     "clutter": [(label, "clutter", CURVE, row, "1") for label, row in (
@@ -36,8 +35,8 @@ FIGURES = {
               ("SEG, control", "q2", "q2 with", "GCBC-SEG", "control"), ("SEG, distractor", "q2", "q2 with", "GCBC-SEG", "distractor")],
     "errors": [(f"{kind}, {words}", "clutter", "Errors in", f"{kind} 0.2", arm) for kind in ("missing", "added")
                for words, arm in (("one other", "1 other"), ("six near", "6 near misses"))],
-    "commands": [(label, "many_commands", UNHEARD, row, arm) for label, row, arm in (
-        ("LGA, heard", SELECTED, SEEN), ("LGA, new", SELECTED, NEW), ("SEG, heard", "GCBC-SEG|heat map", SEEN),
+    "commands": [(label, "many_commands", CURVE, row, arm) for label, row, arm in (
+        ("LGA, heard", "LGA|heat map", SEEN), ("LGA, new", "LGA|heat map", NEW), ("SEG, heard", "GCBC-SEG|heat map", SEEN),
         ("SEG, new", "GCBC-SEG|heat map", NEW), ("random object", RANDOM, NEW))],
     "instruction": [(label, "perturbations", "Is the instruction", row, "use of language") for label, row in (
         ("mask of φ̂, LGA", "LGA"), ("GCBC-SEG", "GCBC-SEG"), ("any mask, words", "mask of any object, and words"),

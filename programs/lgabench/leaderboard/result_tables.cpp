@@ -62,29 +62,37 @@ std::vector<std::string> with_intervals(const NamedTable& table, const std::stri
   return texts;
 }
 
-// Success in the main arm at each number of demonstrations; with one number alone, in every arm.
-Grid success_grid(const NamedTable& table, const std::vector<std::string>& arms, const std::string& main, int n) {
-  const Titles titles(table.setting.suite);
-  const std::vector<int>& numbers = table.setting.demonstrations;
-  const std::string success = statistics::capital(success_word(table.setting));
-  const bool by_number = numbers.size() > 1 || arms.size() == 1;
-  Grid grid = grid_of(table, by_number ? "_demonstrations" : "_arms",
-                      by_number ? fmt::format("{} in {}, by demonstrations", success, titles.arm(main))
-                                : fmt::format("{} in every arm, {} demonstration{}", success, n, n == 1 ? "" : "s"));
+// Each row's name, and no number yet.
+Grid named_grid(const NamedTable& table, const std::string& suffix, const std::string& caption) {
+  Grid grid = grid_of(table, suffix, statistics::capital(success_word(table.setting)) + caption);
   for (const NamedStanding& s : table.standings) add_named_row(grid, s);
-  const auto add_column = [&](const std::string& head, const std::vector<std::string>& texts) {
-    grid.heads.emplace_back(head);
-    grid.align += 'r';
-    for (std::size_t i = 0; i < texts.size(); ++i) grid.rows[i].cells.emplace_back(Span::number(texts[i]));
-  };
-  if (by_number)
-    for (const int number : numbers) add_column(std::to_string(number), with_intervals(table, main, number));
-  else
-    for (const std::string& arm : arms) {
-      std::vector<std::string> means;
-      for (const Standing& s : table.standings) means.push_back(fixed(mean_of(rates_of(*s.entry, arm, n))));
-      add_column(titles.arm(arm), arm == main ? with_intervals(table, arm, n) : means);
-    }
+  return grid;
+}
+
+void add_column(Grid& grid, const std::string& head, const std::vector<std::string>& texts) {
+  grid.heads.emplace_back(head);
+  grid.align += 'r';
+  for (std::size_t i = 0; i < texts.size(); ++i) grid.rows[i].cells.emplace_back(Span::number(texts[i]));
+}
+
+// Success in one arm at each number of demonstrations.
+Grid numbers_grid(const NamedTable& table, const std::string& arm) {
+  Grid grid = named_grid(table, "_demonstrations",
+                         fmt::format(" in {}, by demonstrations", Titles(table.setting.suite).arm(arm)));
+  for (const int number : table.setting.demonstrations)
+    add_column(grid, std::to_string(number), with_intervals(table, arm, number));
+  return grid;
+}
+
+// Success in every arm at one number of demonstrations, with intervals in the main arm.
+Grid arms_grid(const NamedTable& table, const std::vector<std::string>& arms, const std::string& main, int n) {
+  const Titles titles(table.setting.suite);
+  Grid grid = named_grid(table, "_arms", fmt::format(" in every arm, {} demonstration{}", n, n == 1 ? "" : "s"));
+  for (const std::string& arm : arms) {
+    std::vector<std::string> means;
+    for (const Standing& s : table.standings) means.push_back(fixed(mean_of(rates_of(*s.entry, arm, n))));
+    add_column(grid, titles.arm(arm), arm == main ? with_intervals(table, arm, n) : means);
+  }
   return grid;
 }
 
@@ -130,16 +138,20 @@ void add_results(document::Section& section, const NamedTable& table, const fs::
       {{what_was_played(setting) + " Ranks, arms and episodes: ",
         Span::link(Titles(setting.suite).suite(), (board / (setting.suite + ".html")).generic_string()), "."}});
   if (table.standings.empty()) return;
-  if (table.steps) {
+  const bool has_curve = !table.curve.empty();
+  if (has_curve) {
+    add_captioned(section, curve_grid(table.curve, setting.suite, setting.name() + "_curve"));
+  } else if (table.steps) {
     add_captioned(section, steps_grid(*table.steps, setting.suite, setting.name() + "_steps"));
-    if (!table.curve.empty()) add_captioned(section, curve_grid(table.curve, setting.suite, setting.name() + "_curve"));
     if (table.undisputed) section.add<Paragraph>(reading, {{words_of(*table.undisputed)}});
   }
   const std::vector<std::string> arms = arms_of(setting);
   auto [arm, n] = main_column(setting);
   if (!contains(arms, arm))  // a preset of before the suite had it
     arm = table.track.arms.empty() ? arms.back() : table.track.arms.front();
-  add_captioned(section, success_grid(table, arms, arm, n));
+  const bool by_number = setting.demonstrations.size() > 1 || arms.size() == 1;
+  if (by_number) add_captioned(section, numbers_grid(table, arm));
+  if (!by_number || (has_curve && arms.size() > 1)) add_captioned(section, arms_grid(table, arms, arm, n));
 }
 
 Grid all_steps_grid(const Suites& suites) {
