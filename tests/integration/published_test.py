@@ -92,6 +92,17 @@ class Published(Case):
                 found.append(entry["preset"]["suite"])
         self.assertEqual(set(found) - {"few_members"}, set())
 
+    def test_tables_of_a_suite_have_titles_of_their_own_and_the_newest_stands_first(self):
+        for suite in re.split(r"^## ", (BOARD / "README.md").read_text(), flags=re.M)[1:]:
+            titles, seeds = re.findall(r"^### (.*)$", suite, re.M), re.findall(r"scene seed (\d+)\.", suite)
+            self.assertEqual(len(set(titles)), len(titles), suite.splitlines()[0])
+            self.assertEqual(seeds, sorted(seeds, reverse=True), suite.splitlines()[0])
+        tables = re.findall(r"success of every method in every suite.*?</thead>", (BOARD / "index.html").read_text(), re.S)
+        self.assertEqual(len(tables), 3)
+        for table in tables:
+            heads = re.findall(r"<th\b.*?</th>", table, re.S)
+            self.assertEqual(len(set(heads)), len(heads))
+
     def test_ranks_change_on_purpose_alone(self):
         """Rank and success of each published entry; each was replayed, and somebody vouches for that."""
         golden = pathlib.Path(__file__).parent / "golden/ranks.json"

@@ -87,7 +87,7 @@ std::optional<Grid> overview_grid(const Suites& suites, Ranking ranking) {
     std::size_t first_row = 0;
     for (const NamedTable& table : tables) {
       if (is_column(table, ranking)) {
-        Span head(Titles(suite).suite());
+        Span head(with_preset(Titles(suite).suite(), table, tables));
         head.title = statistics::about_suite(suite).question;
         if (table.setting.paired()) head.title += " " + words_of_success(table.setting);
         grid.heads.emplace_back(std::move(head));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <tuple>
 
 #include <lgabench/document/writers.hpp>
 #include <lgabench/leaderboard/overview.hpp>
@@ -66,7 +67,7 @@ Document readme(const Suites& suites) {
     introduction.push_back(Span::link("Sortable tables, scenarios, episodes", suite + ".html"));
     section.add<Paragraph>(reading, {std::move(introduction)});
     for (const NamedTable& table : tables) {
-      if (tables.size() > 1) section.add<Heading>(reading, {statistics::capital(to_string(table.ranking))});
+      if (tables.size() > 1) section.add<Heading>(reading, {section_title(table, tables)});
       add_table(section, table);
     }
     document.sections.push_back(std::move(section));
@@ -193,7 +194,8 @@ bool ranks_entries(const NamedTable& table) {
   return std::any_of(table.standings.begin(), table.standings.end(), [](const Standing& s) { return s.rank; });
 }
 
-// In the order of tracks.json, then by name; suites for diagnosis, without a rank, come last.
+// In the order of tracks.json, then by name; suites for diagnosis, without a rank, come last. A suite's newest presets,
+// whose scene seeds are the highest, come first: they replace earlier ones.
 Suites suites_of(const std::vector<Entry>& entries, const Labels& labels, const Tracks& tracks,
                  const std::vector<std::string>& order, const OnProgress& on_progress) {
   std::map<std::pair<std::ptrdiff_t, std::string>, std::vector<NamedTable>> by_place;
@@ -207,8 +209,9 @@ Suites suites_of(const std::vector<Entry>& entries, const Labels& labels, const 
   }
   Suites suites;
   for (auto& [place, named] : by_place) {
-    std::stable_sort(named.begin(), named.end(),
-                     [](const NamedTable& one, const NamedTable& other) { return one.ranking < other.ranking; });
+    std::stable_sort(named.begin(), named.end(), [](const NamedTable& one, const NamedTable& other) {
+      return std::tie(other.setting.scene_seed, one.ranking) < std::tie(one.setting.scene_seed, other.ranking);
+    });
     suites.emplace_back(place.second, std::move(named));
   }
   std::stable_partition(suites.begin(), suites.end(), [](const auto& suite) {

@@ -322,14 +322,17 @@ std::string title_of(const NamedTable& table) {
   return fmt::format("{}, {}", Titles(table.setting.suite).suite(), to_string(table.ranking));
 }
 
-std::string section_title(const NamedTable& table, const std::vector<NamedTable>& tables) {
-  const std::string ranking = statistics::capital(to_string(table.ranking));
+std::string with_preset(const std::string& title, const NamedTable& table, const std::vector<NamedTable>& tables) {
   const auto alike = std::count_if(tables.begin(), tables.end(),
                                    [&table](const NamedTable& one) { return one.ranking == table.ranking; });
-  if (alike < 2) return ranking;
+  if (alike < 2) return title;
   std::string preset = table.setting.preset;
   std::replace(preset.begin(), preset.end(), '_', ' ');
-  return fmt::format("{}, {}", ranking, preset);
+  return fmt::format("{}, {}", title, preset);
+}
+
+std::string section_title(const NamedTable& table, const std::vector<NamedTable>& tables) {
+  return with_preset(statistics::capital(to_string(table.ranking)), table, tables);
 }
 
 document::Document suite_document(const std::string& suite, const std::vector<NamedTable>& tables) {

@@ -55,7 +55,9 @@ void add_row(document::Grid& grid, const NamedStanding& standing);
 
 /// "Fewer demonstrations?, any policy"
 std::string title_of(const NamedTable& table);
-/// What a page calls it: its ranking, and its preset where another table of the page has that ranking too.
+/// The title, and the table's preset where another table of the suite has the same ranking.
+std::string with_preset(const std::string& title, const NamedTable& table, const std::vector<NamedTable>& tables);
+/// What a page calls it: its ranking.
 std::string section_title(const NamedTable& table, const std::vector<NamedTable>& tables);
 /// The day when an entry was computed first, and that of its last verification that counts; "" without one.
 std::string computed_on(const Entry& entry);
