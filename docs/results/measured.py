@@ -85,23 +85,6 @@ def fidelity():
         ["setting (13 scenarios, 3 seeds)", *(f"{name}, 10 to 50" for name in COMPARED), "points within 1.5 error bars", "mean distance", "in error bars"], lines)
 
 
-UNSEEN = "clutter", "few_members", "many_commands"
-
-
-def unseen_seed():
-    """The steps of the main arms on scenes that no preset publishes."""
-    lines = []
-    for suite in UNSEEN:
-        title, arm = ABOUT[suite]["title"], ABOUT[suite]["main_arm"]
-        labels, language, truth = (success(f"unseen_seed_{suite}{run}", method, arm) for run, method in
-                                   (("_labels", "taken_features"), ("", "selected_by:lga"), ("", "selected_by:human")))
-        share = labels["success"] / truth["success"]
-        lines.append([title, *(f"{number(row['success'])} [{interval(row)}]" for row in (labels, language, truth)),
-                      f"{number(share)}{'' if share <= .8 else ', above the limit'}"])
-    return commands(*(f"unseen_seed_{suite}{run}" for suite in UNSEEN for run in ("_labels", ""))) + table(
-        ["suite", "labels", "language", "truth", "labels to truth, limit 0.80"], lines)
-
-
 PERSONS = {"person_rule+learns=words": "the words", "person_rule+learns=common_looks": "what taken objects share, one Selection",
            "person_rule+choice=scene+learns=common_looks": "the same, scene by scene", "person_rule": "exact Bayes, one Selection",
            "person_rule+choice=scene": "the same, scene by scene (the ceiling)", "person_rule+asks=random": "Bayes, random questions",
@@ -326,8 +309,8 @@ def moves():
          RUNS["fidelity_paper_shuffled"]["command"]),
         ("places, batches, picture: LGA", "`paper`", "`paper_text`", ran("fidelity_paper_drawn", "lga", "test", 50),
          ran("fidelity_text_drawn", "lga", "test", 50), RUNS["fidelity_text_drawn"]["command"]),
-        ("what stands beside, labels", "one other", "four near misses", ran("unseen_seed_clutter_labels", "taken_features", "others_1"),
-         ran("unseen_seed_clutter_labels", "taken_features", "near_4"), RUNS["unseen_seed_clutter_labels"]["command"]),
+        ("what stands beside, labels", "one other", "four near misses", ran("clutter_labels", "taken_features", "others_1"),
+         ran("clutter_labels", "taken_features", "near_4"), RUNS["clutter_labels"]["command"]),
         ("words, LGA", "the command", "nonsense", own, nonsense, RUNS["instruction"]["command"]),
         ("names, LGA", "the simulator's", "read from the picture", ran("pictures_language", "lga", "near_4"), ran("pictures_language", "lga+names=read", "near_4"),
          RUNS["pictures_language"]["command"]),
@@ -341,7 +324,7 @@ def moves():
 
 def rewritten(page):
     """The page's text with each marked table made anew."""
-    tables = {"instruction": instruction, "fidelity": fidelity, "unseen_seed": unseen_seed, "persons": persons,
+    tables = {"instruction": instruction, "fidelity": fidelity, "persons": persons,
               **{f"persons_{run}": lambda run=run: persons(f"persons_{run}") for run in ("lists", "hints", "policy")}, "pictures": pictures,
               "reading": reading, "errands": errands, "errands_shown": errands_shown, "refusing": refusing, "speed": lambda: (MEASURED / "speed.txt").read_text(), "perturbations_read": perturbations_read,
               "rivals": lambda: rivals(page.stem),
