@@ -52,7 +52,7 @@ class Trained {
     observation_ = seen(scene);
     const Command command = scenario.command(scene.command);
     instruction_ = {command.utterance, method_->select(command, scenario.space, services)};
-    policy_ = method_->learn({{instruction_, {{observation_, {}}}}}, services);
+    policy_ = method_->learn({{instruction_, {{observation_, tabletop::TwoPoses{}}}}}, services);
   }
   Action act() { return policy_->act(observation_, instruction_); }
 
