@@ -62,6 +62,12 @@ std::vector<std::string> with_intervals(const NamedTable& table, const std::stri
   return texts;
 }
 
+std::vector<std::string> means_of(const NamedTable& table, const std::string& arm, int n) {
+  std::vector<std::string> means;
+  for (const Standing& s : table.standings) means.push_back(fixed(mean_of(rates_of(*s.entry, arm, n))));
+  return means;
+}
+
 // Each row's name, and no number yet.
 Grid named_grid(const NamedTable& table, const std::string& suffix, const std::string& caption) {
   Grid grid = grid_of(table, suffix, statistics::capital(success_word(table.setting)) + caption);
@@ -88,11 +94,8 @@ Grid numbers_grid(const NamedTable& table, const std::string& arm) {
 Grid arms_grid(const NamedTable& table, const std::vector<std::string>& arms, const std::string& main, int n) {
   const Titles titles(table.setting.suite);
   Grid grid = named_grid(table, "_arms", fmt::format(" in every arm, {} demonstration{}", n, n == 1 ? "" : "s"));
-  for (const std::string& arm : arms) {
-    std::vector<std::string> means;
-    for (const Standing& s : table.standings) means.push_back(fixed(mean_of(rates_of(*s.entry, arm, n))));
-    add_column(grid, titles.arm(arm), arm == main ? with_intervals(table, arm, n) : means);
-  }
+  for (const std::string& arm : arms)
+    add_column(grid, titles.arm(arm), arm == main ? with_intervals(table, arm, n) : means_of(table, arm, n));
   return grid;
 }
 
