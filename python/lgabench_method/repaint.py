@@ -149,6 +149,7 @@ Augment = Callable[[Step, Selection, int, RandomStream], Step]
 
 def augmented(demonstrations: Sequence[Demonstration], copies: int, augment: Augment, seed: int) -> list[Demonstration]:
     """The demonstrations and, behind them, copy by copy, what augment(step, selection, copy, stream) makes of their steps.
+    A step without numbers, which says that nothing is left to do, has no copy.
 
     Train for as many optimiser steps as on the demonstrations alone, or say that you do not: a row with copies learns longer.
     """
@@ -156,9 +157,12 @@ def augmented(demonstrations: Sequence[Demonstration], copies: int, augment: Aug
     for copy in range(copies):
         row = 0
         for one in demonstrations:
-            steps = []
-            for step in one.steps + one.recovery:
-                steps.append(augment(step, one.instruction.selection, copy, RandomStream(f"learning/augment/{seed}/{row}/{copy}")))
-                row += 1
-            everything.append(Demonstration(one.instruction, steps[:len(one.steps)], steps[len(one.steps):]))
+            copied = [], []
+            for part, steps in zip(copied, (one.steps, one.recovery)):
+                for step in steps:
+                    if len(step.label):
+                        part.append(augment(step, one.instruction.selection, copy, RandomStream(f"learning/augment/{seed}/{row}/{copy}")))
+                        row += 1
+            if copied[0]:
+                everything.append(Demonstration(one.instruction, *copied))
     return everything

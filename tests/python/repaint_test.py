@@ -63,6 +63,20 @@ class Repaint(unittest.TestCase):
         self.assertEqual(pictures, [digest(one.steps[0].observation.rgb) for one in again])
         self.assertEqual(len(set(pictures)), 8)
 
+    def test_a_step_that_says_that_nothing_is_left_has_no_copy(self):
+        one = testing.demonstrations("heart", 1)[0]
+        done = Step(one.steps[0].observation, numpy.zeros(0))
+        rows = []
+
+        def noted(step, selection, copy, stream):
+            rows.append(len(step.label))
+            return step
+
+        shown = [Demonstration(one.instruction, [done]), Demonstration(one.instruction, [*one.steps, done])]
+        more = augmented(shown, 2, noted, 5)
+        self.assertEqual([len(each.steps) for each in more], [1, 2, 1, 1])
+        self.assertEqual(rows, [12, 12])
+
     def test_a_method_may_ask_for_shadows(self):
         class Looks:
             options = {}
