@@ -30,10 +30,11 @@ std::vector<std::string> arms_of(const Setting& setting) {
   return arms;
 }
 
-// A row's name, with its policy and answers where they are not the usual ones.
-void add_named_row(Grid& grid, const NamedStanding& s) {
+// A row's name, with its policy and answers unless the table above has them.
+void add_named_row(Grid& grid, const NamedStanding& s, bool repeated) {
   add_row(grid, s);
   put(grid, "method", 'l', Span(s.label));
+  if (repeated) return;
   put(grid, "policy", 'l', Span(s.policy));
   put(grid, "answers", 'l', Span(answers_label(*s.entry)));
 }
@@ -69,9 +70,9 @@ std::vector<std::string> means_of(const NamedTable& table, const std::string& ar
 }
 
 // Each row's name, and no number yet.
-Grid named_grid(const NamedTable& table, const std::string& suffix, const std::string& caption) {
+Grid named_grid(const NamedTable& table, const std::string& suffix, const std::string& caption, bool repeated) {
   Grid grid = grid_of(table, suffix, statistics::capital(success_word(table.setting)) + caption);
-  for (const NamedStanding& s : table.standings) add_named_row(grid, s);
+  for (const NamedStanding& s : table.standings) add_named_row(grid, s, repeated);
   return grid;
 }
 
@@ -84,16 +85,18 @@ void add_column(Grid& grid, const std::string& head, const std::vector<std::stri
 // Success in one arm at each number of demonstrations.
 Grid numbers_grid(const NamedTable& table, const std::string& arm) {
   Grid grid = named_grid(table, "_demonstrations",
-                         fmt::format(" in {}, by demonstrations", Titles(table.setting.suite).arm(arm)));
+                         fmt::format(" in {}, by demonstrations", Titles(table.setting.suite).arm(arm)), false);
   for (const int number : table.setting.demonstrations)
     add_column(grid, std::to_string(number), with_intervals(table, arm, number));
   return grid;
 }
 
 // Success in every arm at one number of demonstrations, with intervals in the main arm.
-Grid arms_grid(const NamedTable& table, const std::vector<std::string>& arms, const std::string& main, int n) {
+Grid arms_grid(const NamedTable& table, const std::vector<std::string>& arms, const std::string& main, int n,
+               bool repeated) {
   const Titles titles(table.setting.suite);
-  Grid grid = named_grid(table, "_arms", fmt::format(" in every arm, {} demonstration{}", n, n == 1 ? "" : "s"));
+  Grid grid =
+      named_grid(table, "_arms", fmt::format(" in every arm, {} demonstration{}", n, n == 1 ? "" : "s"), repeated);
   for (const std::string& arm : arms)
     add_column(grid, titles.arm(arm), arm == main ? with_intervals(table, arm, n) : means_of(table, arm, n));
   return grid;
@@ -154,7 +157,7 @@ void add_results(document::Section& section, const NamedTable& table, const fs::
     arm = table.track.arms.empty() ? arms.back() : table.track.arms.front();
   const bool by_number = setting.demonstrations.size() > 1 || arms.size() == 1;
   if (by_number) add_captioned(section, numbers_grid(table, arm));
-  if (!by_number || (has_curve && arms.size() > 1)) add_captioned(section, arms_grid(table, arms, arm, n));
+  if (!by_number || (has_curve && arms.size() > 1)) add_captioned(section, arms_grid(table, arms, arm, n, by_number));
 }
 
 Grid all_steps_grid(const Suites& suites) {
