@@ -36,8 +36,8 @@ FIGURES = {
     "errors": [(f"{kind}, {words}", "clutter", "Errors in", f"{kind} 0.2", arm) for kind in ("missing", "added")
                for words, arm in (("one other", "1 other"), ("six near", "6 near misses"))],
     "commands": [(label, "many_commands", CURVE, row, arm) for label, row, arm in (
-        ("LGA, heard", "LGA|heat map", SEEN), ("LGA, new", "LGA|heat map", NEW), ("SEG, heard", "GCBC-SEG|heat map", SEEN),
-        ("SEG, new", "GCBC-SEG|heat map", NEW), ("random object", RANDOM, NEW))],
+        ("LGA, heard", "LGA", SEEN), ("LGA, new", "LGA", NEW), ("SEG, heard", "GCBC-SEG", SEEN),
+        ("SEG, new", "GCBC-SEG", NEW), ("random object", RANDOM, NEW))],
     "instruction": [(label, "perturbations", "Is the instruction", row, "use of language") for label, row in (
         ("mask of φ̂, LGA", "LGA"), ("GCBC-SEG", "GCBC-SEG"), ("any mask, words", "mask of any object, and words"),
         ("any mask, no words", "mask of any object"))],

@@ -97,9 +97,10 @@ LISTED = {"plga+unlisted=0.0": "a model's list alone", "plga": "the list, and 0.
 
 def persons(run="persons"):
     """Success by demonstrations, and what each row loses with as many questions: to the ceiling, and to exact Bayes with one Selection."""
-    losses = [("regret", "regret"), ("to Bayes with one Selection", "to_bayes")]
+    losses = [("regret", "regret", "person_rule+choice=scene"), ("to Bayes with one Selection", "to_bayes", "person_rule")]
     if not any("to_bayes" in one for one in RUNS[run]["regret"]):  # a run of before regret was to the ceiling
-        losses = [("to Bayes with one Selection", "regret")]
+        losses = [("to Bayes with one Selection", "regret", "person_rule")]
+    losses = [loss for loss in losses if any(one.get(loss[1]) for one in RUNS[run]["regret"])]
     found, names = {}, {**PERSONS, **(LISTED if run == "persons_lists" else {})}
     for one in RUNS[run]["regret"]:
         row = re.sub(r"\+questions=[^+]*", "", one["method"])
@@ -108,11 +109,10 @@ def persons(run="persons"):
     lines = []
     for (questions, row), by_n in sorted(found.items(), key=lambda one: (one[0][0], list(names).index(one[0][1]))):
         last = by_n[ns[-1]]
-        lost = [f"{last[member]:+.2f} [{interval(last[f'{member}_interval'])}]" if member in last and row != of else "" for member, of in
-                zip((member for _, member in losses), ("person_rule+choice=scene", "person_rule")[-len(losses):])]
+        lost = [f"{last[member]:+.2f} [{interval(last[f'{member}_interval'])}]" if member in last and row != of else "" for _, member, of in losses]
         lines.append([names[row], str(questions), *(f"{number(by_n[n]['success'])} [{interval(by_n[n]['success_interval'])}]" for n in ns),
                       *lost])
-    return commands(run) + table(["row", "questions", *(f"{n} demonstration{'' if n == 1 else 's'}" for n in ns), *(f"{word} at {ns[-1]}" for word, _ in losses)], lines)
+    return commands(run) + table(["row", "questions", *(f"{n} demonstration{'' if n == 1 else 's'}" for n in ns), *(f"{word} at {ns[-1]}" for word, *_ in losses)], lines)
 
 
 ERRANDS = {"human+policy=point": "truth", "human": "truth, heat map learned", "errand+readings=majority": "truth, most frequent reading",
@@ -251,8 +251,8 @@ def rivals(suite):
             continue
         rates = [" ".join(number(by_number["rate"]) for by_number in one["rivals"][rule].values()) for one in arms.values()]
         lines.append(f"| {RULES[rule]} | {' | '.join(rates)} |")
-    return (f"    {RIVALS['command']}\n\nHow often a rule picks the meant object{' and its receiver' if suite == 'fetch' else ''} in scenes that no "
-            f"preset publishes (`results/measured/rivals.json` has more):\n\n" + "\n".join(lines) + "\n")
+    return (f"    {RIVALS['command']}\n\nA rule's success in scenes that no preset publishes (more: `results/measured/rivals.json`):\n\n" +
+            "\n".join(lines) + "\n")
 
 
 def leaks(suite):
@@ -282,6 +282,24 @@ def read_off(name):
     words = [i for i in range(len(said["columns"])) if all(isinstance(row[i], str) for row in said["rows"])]
     return "".join(f"    {line}\n" for line in said.get("commands", [])) + ("\n" if "commands" in said else "") + table(
         said["columns"], [[shown(cell) for cell in row] for row in said["rows"]], words)
+
+
+# A row of robosuite's table, and its title on the page of clutter, where it has one.
+SIMULATED = {"gcbc_seg": "GCBC-SEG", "taken_features": "What was taken", "lga": "LGA", "lga_then_taken": "LGA, then what was taken",
+             "human": "True mask", "factorial+input=object_mask+scenes=truth": "", "random_object": "Random visible object"}
+TOLD = "pixels", "labels, counted", "command read", "both", "true mask", "mask of any object", "random object"
+
+
+def simulators():
+    """Success among four near misses after 1 and 5 demonstrations, in robosuite's table and in clutter's curve."""
+    printed = re.search(r"Success in 4 near misses, by demonstrations:\n\n(.*?)\n\n", (PAGES / "clutter.md").read_text(), re.S)[1]
+    cells = ([cell.strip() for cell in line.strip("|").split("|")] for line in printed.splitlines()[2:])
+    tabletop = {name: at_1_and_5 for name, _, _, *at_1_and_5, _ in cells}
+    lines = []
+    for told, (method, title) in zip(TOLD, SIMULATED.items()):
+        rates = [success("robosuite", method, "near_4", n) for n in (1, 5)]
+        lines.append([told, *(f"{number(rate['success'])} [{interval(rate)}]" for rate in rates), *(tabletop[title] if title else ("–", "–"))])
+    return commands("robosuite") + table(["the policy is told", "robosuite, 1", "5", "tabletop, 1", "5"], lines)
 
 
 def of_board(suite, name, demonstrations):
@@ -328,7 +346,7 @@ def rewritten(page):
               **{f"persons_{run}": lambda run=run: persons(f"persons_{run}") for run in ("lists", "hints", "policy")}, "pictures": pictures,
               "reading": reading, "errands": errands, "errands_shown": errands_shown, "refusing": refusing, "speed": lambda: (MEASURED / "speed.txt").read_text(), "perturbations_read": perturbations_read,
               "rivals": lambda: rivals(page.stem),
-              "leaks": lambda: leaks(page.stem), "moves": moves}
+              "leaks": lambda: leaks(page.stem), "moves": moves, "simulators": simulators}
     made = lambda name: tables[name]() if name in tables else read_off(name)
     return re.sub(r"(<!-- measured:(\w+) -->\n).*?(<!-- /measured -->)", lambda found: f"{found[1]}\n{made(found[2])}\n{found[3]}",
                   page.read_text(), flags=re.S)

@@ -82,12 +82,24 @@ void add_column(Grid& grid, const std::string& head, const std::vector<std::stri
   for (std::size_t i = 0; i < texts.size(); ++i) grid.rows[i].cells.emplace_back(Span::number(texts[i]));
 }
 
+// The oracle's row says nothing where it succeeds everywhere.
+void leave_out_oracle(Grid& grid, const NamedTable& table) {
+  for (std::size_t i = grid.rows.size(); i-- > 0;) {
+    const Standing& s = table.standings[i];
+    const bool everywhere =
+        std::all_of(s.in_arm.begin(), s.in_arm.end(), [](const auto& arm) { return arm.second > .995; });
+    if (s.entry->identity.row.id == "oracle" && everywhere)
+      grid.rows.erase(grid.rows.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+}
+
 // Success in one arm at each number of demonstrations.
 Grid numbers_grid(const NamedTable& table, const std::string& arm) {
   Grid grid = named_grid(table, "_demonstrations",
                          fmt::format(" in {}, by demonstrations", Titles(table.setting.suite).arm(arm)), false);
   for (const int number : table.setting.demonstrations)
     add_column(grid, std::to_string(number), with_intervals(table, arm, number));
+  leave_out_oracle(grid, table);
   return grid;
 }
 
@@ -99,6 +111,7 @@ Grid arms_grid(const NamedTable& table, const std::vector<std::string>& arms, co
       named_grid(table, "_arms", fmt::format(" in every arm, {} demonstration{}", n, n == 1 ? "" : "s"), repeated);
   for (const std::string& arm : arms)
     add_column(grid, titles.arm(arm), arm == main ? with_intervals(table, arm, n) : means_of(table, arm, n));
+  leave_out_oracle(grid, table);
   return grid;
 }
 
