@@ -105,6 +105,12 @@ class Pages(unittest.TestCase):
         for name in json.loads((SOURCE / "results/measured/tables.json").read_text()):
             self.assertEqual(shown.count(f"<!-- measured:{name} -->"), 1, f"{name} of tables.json stands on one page")
 
+    def test_an_oracle_that_always_succeeds_has_no_row(self):
+        blocks = [block for page in (SOURCE / "docs/results").glob("*.md") for block in re.findall(r"<!-- board:.*?<!-- /board -->", page.read_text(), re.S)]
+        rows = [row for block in blocks for row in block.splitlines() if row.startswith("| Oracle |")]
+        self.assertGreater(len(blocks), 10)
+        self.assertEqual([row for row in rows if set(re.findall(r"(?<=\| )\d\.\d\d", row)) == {"1.00"}], [])
+
     def test_the_figures_of_the_findings_are_their_tables(self):
         page, pictures = (SOURCE / "docs/results.md").read_text(), SOURCE / "docs/pictures"
         with tempfile.TemporaryDirectory() as made:
