@@ -284,10 +284,11 @@ def read_off(name):
         said["columns"], [[shown(cell) for cell in row] for row in said["rows"]], words)
 
 
-# A row of robosuite's table, and its title on the page of clutter, where it has one.
-SIMULATED = {"gcbc_seg": "GCBC-SEG", "taken_features": "What was taken", "lga": "LGA", "lga_then_taken": "LGA, then what was taken",
-             "human": "True mask", "factorial+input=object_mask+scenes=truth": "", "random_object": "Random visible object"}
-TOLD = "pixels", "labels, counted", "command read", "both", "true mask", "mask of any object", "random object"
+# What a policy is told: the row of robosuite's table, and its title on the page of clutter, where it has one.
+SIMULATED = {"pixels": ("gcbc_seg", "GCBC-SEG"), "labels, counted": ("taken_features", "What was taken"),
+             "labels, by names": ("taken_names", "What was taken, by names"), "command read": ("lga", "LGA"),
+             "both": ("lga_then_taken", "LGA, then what was taken"), "true mask": ("human", "True mask"),
+             "mask of any object": ("factorial+input=object_mask+scenes=truth", ""), "random object": ("random_object", "Random visible object")}
 
 
 def simulators():
@@ -296,10 +297,10 @@ def simulators():
     cells = ([cell.strip() for cell in line.strip("|").split("|")] for line in printed.splitlines()[2:])
     tabletop = {name: at_1_and_5 for name, _, _, *at_1_and_5, _ in cells}
     lines = []
-    for told, (method, title) in zip(TOLD, SIMULATED.items()):
+    for told, (method, title) in SIMULATED.items():
         rates = [success("robosuite", method, "near_4", n) for n in (1, 5)]
         lines.append([told, *(f"{number(rate['success'])} [{interval(rate)}]" for rate in rates), *(tabletop[title] if title else ("–", "–"))])
-    return commands("robosuite") + table(["the policy is told", "robosuite, 1", "5", "tabletop, 1", "5"], lines)
+    return commands("robosuite") + table(["told", "robosuite, 1", "5", "tabletop, 1", "5"], lines)
 
 
 def of_board(suite, name, demonstrations):
