@@ -307,6 +307,20 @@ def times_opened(files, action):
     return times
 
 
+class Merging(Case):
+    def test_rows_that_ask_nobody_go_with_any_answers(self):
+        common = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "2", "--no-reference"]
+        self.call(*common, "--methods", "lga+policy=centroid", "--out", "asked")
+        self.call(*common, "--methods", "human+policy=centroid", "--answers", "none", "--out", "nobody")
+        asked, nobody = (json.loads((self.dir / run / "run.json").read_text()) for run in ("asked", "nobody"))
+        self.assertNotEqual(asked["request"]["answers"], nobody["request"]["answers"])
+        for out, parts in {"one": ["asked", "nobody"], "other": ["nobody", "asked"]}.items():
+            self.call("merge", out, *parts)
+            merged = json.loads((self.dir / out / "run.json").read_text())
+            self.assertEqual([merged["request"]["answers"], merged["answers"]], [asked["request"]["answers"], asked["answers"]], out)
+            self.assertIn("2 bit-identical", self.call("verify", out, "--all").stdout)
+
+
 class Shards(Case):
     RUN = ["run", "q1", "--scenarios", "heart,letter", "--methods",
            "fixture_constant,fixture_faulty+where=learn+how=throw", "--demos", "10,20", "--seeds", "0", "--episodes", "2", "--plugin-path", FIXTURES / "good",

@@ -74,6 +74,8 @@ void unite(Json& all, const Json& more) {
     if (there.insert(item).second) all.push_back(item);
 }
 
+bool asks_nobody(const Json& request) { return request.value("answers", Json()) == to_string(NoAnswers()); }
+
 // What `all` is with the cells, plugins and settings of `more`: another method, seed or number of demonstrations, with
 // nothing else in the settings changed.
 void unite(RunRecord& all, const RunPart& first, const RunPart& part) {
@@ -86,6 +88,9 @@ void unite(RunRecord& all, const RunPart& first, const RunPart& part) {
                                        {"names", Json(Reading::simulator)},
                                        {"segments", Json(Reading::simulator)}})
       if (has->contains(member) && !lacks->contains(member)) (*lacks)[member] = Json::array({none});
+  // Rows that ask nobody are the same whoever answers the others.
+  for (auto [asks_none, asks] : {std::pair{&all.request, &more.request}, std::pair{&more.request, &all.request}})
+    if (asks_nobody(*asks_none)) (*asks_none)["answers"] = (*asks)["answers"];
   for (const auto& [member, value] : more.request.items()) {
     const bool may_grow = std::count(grid_lists.begin(), grid_lists.end(), member) > 0;
     Json& there = all.request[member];
@@ -221,9 +226,11 @@ bool asks_live(const RunPart& part) {
   return answers.is_string() && std::holds_alternative<LiveAnswers>(read_answer_source(answers));
 }
 
-// The part that keeps every reply, where parts asked a model live, on one cassette; else the first.
+// The part that keeps every reply, where parts asked a model live, on one cassette; else the first that asks.
 const RunPart& with_all_replies(const std::vector<RunPart>& parts) {
-  const RunPart* all = &parts.front();
+  const auto asking =
+      std::find_if(parts.begin(), parts.end(), [](const RunPart& part) { return !asks_nobody(part.record().request); });
+  const RunPart* all = asking == parts.end() ? &parts.front() : &*asking;
   if (!asks_live(*all)) return *all;
   const auto bytes = [](const RunPart& part) {
     const auto kept = kept_replies(part.path());
