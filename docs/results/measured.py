@@ -288,7 +288,7 @@ def read_off(name):
 SIMULATED = {"pixels": ("gcbc_seg", "GCBC-SEG"), "labels, counted": ("taken_features", "What was taken"),
              "labels, by names": ("taken_names", "What was taken, by names"), "command read": ("lga", "LGA"),
              "both": ("lga_then_taken", "LGA, then what was taken"), "true mask": ("human", "True mask"),
-             "mask of any object": ("factorial+input=object_mask+scenes=truth", ""), "random object": ("random_object", "Random visible object")}
+             "mask of any object": ("factorial", "")}
 
 
 def simulators():

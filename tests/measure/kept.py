@@ -25,7 +25,7 @@ def kept(run):
     summary, about = (json.loads((run / f"{name}.json").read_text()) for name in ("summary", "run"))
     if summary["failed_cells"]:
         raise SystemExit(f"{run}: {len(summary['failed_cells'])} cells failed")
-    command = re.sub(r" --(jobs|out) \S+|^\S*/(?=lgabench )", "", about["command"])
+    command = re.sub(r" --(jobs|out|cache) \S+|^\S*/(?=lgabench )", "", about["command"])
     rows = [{**{name: row[name] for name in MEMBERS}, **of_pairs(row)} for row in summary["rows"] if row["scenario"] == "(mean)"]
     heard = [{"method": curve["method"], "demonstrations": curve["demonstrations"], "control": curve["control"]["took"],
               "levels": {level["name"]: {"took": level["took"], "success": level["success"],

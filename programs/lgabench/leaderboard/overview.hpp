@@ -22,7 +22,7 @@ document::Section how_to_enter();
 /// suite's main arm along the demonstrations with 95 % intervals over test scenes and training seeds, then in every arm
 /// at the suite's main number of demonstrations, and the steps where their four rows are there. Of perturbed scenes the
 /// ranking stands in their place.
-void add_results(document::Section& section, const NamedTable& table, const fs::path& board);
+void add_results(document::Section& section, NamedTable table, const fs::path& board);
 
 /// A line for each table of the abstraction track that has the steps: success by what the policy is told, what language
 /// adds to labels, and what is left between language and the truth.

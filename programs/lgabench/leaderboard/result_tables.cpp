@@ -30,23 +30,18 @@ std::vector<std::string> arms_of(const Setting& setting) {
   return arms;
 }
 
-// A row's name, with its policy and answers unless the table above has them.
-void add_named_row(Grid& grid, const NamedStanding& s, bool repeated) {
-  add_row(grid, s);
-  put(grid, "method", 'l', Span(s.label));
-  if (repeated) return;
-  put(grid, "policy", 'l', Span(s.policy));
-  put(grid, "answers", 'l', Span(answers_label(*s.entry)));
+// Its row says nothing.
+bool is_oracle_that_always_succeeds(const Standing& s) {
+  return s.entry->identity.row.id == "oracle" &&
+         std::all_of(s.in_arm.begin(), s.in_arm.end(), [](const auto& arm) { return arm.second > .995; });
 }
 
 double mean_of(const Rates& rates) {
-  std::vector<double> scenarios;
-  for (const auto& policies : rates) {
-    std::vector<double> means;
-    for (const std::vector<double>& scenes : policies) means.push_back(statistics::mean(scenes));
-    scenarios.push_back(statistics::mean(means));
-  }
-  return statistics::mean(scenarios);
+  double sum = 0;
+  for (const auto& policies : rates)
+    for (const std::vector<double>& scenes : policies)
+      sum += statistics::mean(scenes) / static_cast<double>(policies.size() * rates.size());
+  return sum;
 }
 
 // A row's mean over scenarios with its interval, of each row.
@@ -69,10 +64,16 @@ std::vector<std::string> means_of(const NamedTable& table, const std::string& ar
   return means;
 }
 
-// Each row's name, and no number yet.
+// Each row's name, with its policy and answers unless the table above has them, and no number yet.
 Grid named_grid(const NamedTable& table, const std::string& suffix, const std::string& caption, bool repeated) {
   Grid grid = grid_of(table, suffix, statistics::capital(success_word(table.setting)) + caption);
-  for (const NamedStanding& s : table.standings) add_named_row(grid, s, repeated);
+  for (const NamedStanding& s : table.standings) {
+    add_row(grid, s);
+    put(grid, "method", 'l', Span(s.label));
+    if (repeated) continue;
+    put(grid, "policy", 'l', Span(s.policy));
+    put(grid, "answers", 'l', Span(answers_label(*s.entry)));
+  }
   return grid;
 }
 
@@ -82,36 +83,23 @@ void add_column(Grid& grid, const std::string& head, const std::vector<std::stri
   for (std::size_t i = 0; i < texts.size(); ++i) grid.rows[i].cells.emplace_back(Span::number(texts[i]));
 }
 
-// The oracle's row says nothing where it succeeds everywhere.
-void leave_out_oracle(Grid& grid, const NamedTable& table) {
-  for (std::size_t i = grid.rows.size(); i-- > 0;) {
-    const Standing& s = table.standings[i];
-    const bool everywhere =
-        std::all_of(s.in_arm.begin(), s.in_arm.end(), [](const auto& arm) { return arm.second > .995; });
-    if (s.entry->identity.row.id == "oracle" && everywhere)
-      grid.rows.erase(grid.rows.begin() + static_cast<std::ptrdiff_t>(i));
-  }
-}
-
 // Success in one arm at each number of demonstrations.
 Grid numbers_grid(const NamedTable& table, const std::string& arm) {
   Grid grid = named_grid(table, "_demonstrations",
                          fmt::format(" in {}, by demonstrations", Titles(table.setting.suite).arm(arm)), false);
   for (const int number : table.setting.demonstrations)
     add_column(grid, std::to_string(number), with_intervals(table, arm, number));
-  leave_out_oracle(grid, table);
   return grid;
 }
 
 // Success in every arm at one number of demonstrations, with intervals in the main arm.
 Grid arms_grid(const NamedTable& table, const std::vector<std::string>& arms, const std::string& main, int n,
                bool repeated) {
-  const Titles titles(table.setting.suite);
   Grid grid =
       named_grid(table, "_arms", fmt::format(" in every arm, {} demonstration{}", n, n == 1 ? "" : "s"), repeated);
   for (const std::string& arm : arms)
-    add_column(grid, titles.arm(arm), arm == main ? with_intervals(table, arm, n) : means_of(table, arm, n));
-  leave_out_oracle(grid, table);
+    add_column(grid, Titles(table.setting.suite).arm(arm),
+               arm == main ? with_intervals(table, arm, n) : means_of(table, arm, n));
   return grid;
 }
 
@@ -123,11 +111,10 @@ void add_captioned(document::Section& section, Grid grid) {
 
 // What the row of a suite's table says at one number of demonstrations.
 Grid::Row steps_row(const NamedTable& table, const BoardSteps& steps) {
-  const std::string& suite = table.setting.suite;
-  const Titles titles(suite);
+  const Titles titles(table.setting.suite);
   Grid::Row row{
       {},
-      {Span::link(titles.suite(), "results/" + suite + ".md"),
+      {Span::link(titles.suite(), "results/" + table.setting.suite + ".md"),
        Span(titles.arm(steps.column.arm) + (table.setting.paired() ? ", paired success" : "")),
        Span::number(std::to_string(steps.scenarios)), Span::number(std::to_string(steps.column.demonstrations))}};
   const auto add = [&](const std::optional<double>& success) {
@@ -150,8 +137,10 @@ Grid::Row steps_row(const NamedTable& table, const BoardSteps& steps) {
 
 }  // namespace
 
-void add_results(document::Section& section, const NamedTable& table, const fs::path& board) {
+void add_results(document::Section& section, NamedTable table, const fs::path& board) {
   const Setting& setting = table.setting;
+  auto& rows = table.standings;
+  rows.erase(std::remove_if(rows.begin(), rows.end(), is_oracle_that_always_succeeds), rows.end());
   section.add<Paragraph>(
       reading,
       {{what_was_played(setting) + " Ranks, arms and episodes: ",
