@@ -13,6 +13,9 @@ import re
 import sys
 
 PAGES = pathlib.Path(__file__).parent
+sys.path.append(str(PAGES.parent / "pictures"))
+from findings import cell
+
 ROOT = PAGES.parents[1]
 MEASURED = ROOT / "results/measured"
 RUNS = {file.stem: json.loads(file.read_text()) for file in (MEASURED / "runs").glob("*.json")}
@@ -293,13 +296,12 @@ SIMULATED = {"pixels": ("gcbc_seg", "GCBC-SEG"), "labels, counted": ("taken_feat
 
 def simulators():
     """Success among four near misses after 1 and 5 demonstrations, in robosuite's table and in clutter's curve."""
-    printed = re.search(r"Success in 4 near misses, by demonstrations:\n\n(.*?)\n\n", (PAGES / "clutter.md").read_text(), re.S)[1]
-    cells = ([cell.strip() for cell in line.strip("|").split("|")] for line in printed.splitlines()[2:])
-    tabletop = {name: at_1_and_5 for name, _, _, *at_1_and_5, _ in cells}
     lines = []
     for told, (method, title) in SIMULATED.items():
-        rates = [success("robosuite", method, "near_4", n) for n in (1, 5)]
-        lines.append([told, *(f"{number(rate['success'])} [{interval(rate)}]" for rate in rates), *(tabletop[title] if title else ("–", "–"))])
+        here = [success("robosuite", method, "near_4", n) for n in (1, 5)]
+        tabletop = [list(cell("clutter", "On the board: curve", f"{title}|heat map", n)) for n in ("1", "5")] if title else []
+        lines.append([told, *(f"{number(rate['success'])} [{interval(rate)}]" for rate in here),
+                      *(map(shown, tabletop) if tabletop else ("–", "–"))])
     return commands("robosuite") + table(["told", "robosuite, 1", "5", "tabletop, 1", "5"], lines)
 
 

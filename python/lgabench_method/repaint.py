@@ -153,16 +153,18 @@ def augmented(demonstrations: Sequence[Demonstration], copies: int, augment: Aug
 
     Train for as many optimiser steps as on the demonstrations alone, or say that you do not: a row with copies learns longer.
     """
+    def acting(steps):
+        return [step for step in steps if len(step.label)]
+
     everything = list(demonstrations)
     for copy in range(copies):
         row = 0
         for one in demonstrations:
-            copied = [], []
-            for part, steps in zip(copied, (one.steps, one.recovery)):
-                for step in steps:
-                    if len(step.label):
-                        part.append(augment(step, one.instruction.selection, copy, RandomStream(f"learning/augment/{seed}/{row}/{copy}")))
-                        row += 1
-            if copied[0]:
-                everything.append(Demonstration(one.instruction, *copied))
+            steps, recovery = acting(one.steps), acting(one.recovery)
+            changed = []
+            for step in steps + recovery:
+                changed.append(augment(step, one.instruction.selection, copy, RandomStream(f"learning/augment/{seed}/{row}/{copy}")))
+                row += 1
+            if steps:
+                everything.append(Demonstration(one.instruction, changed[:len(steps)], changed[len(steps):]))
     return everything

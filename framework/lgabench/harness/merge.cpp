@@ -82,15 +82,14 @@ void unite(RunRecord& all, const RunPart& first, const RunPart& part) {
   RunRecord more = part.record();
   if (all.cells == more.cells) return;
   const std::string differs = difference(all, more);
-  // A run that makes no errors, and reads nothing, need not say so.
-  for (auto [lacks, has] : {std::pair{&all.request, &more.request}, std::pair{&more.request, &all.request}})
+  // A run that makes no errors, and reads nothing, need not say so; rows that ask nobody go with any answers.
+  for (auto [lacks, has] : {std::pair{&all.request, &more.request}, std::pair{&more.request, &all.request}}) {
     for (const auto& [member, none] : {std::pair{"selection_errors", Json::object()},
                                        {"names", Json(Reading::simulator)},
                                        {"segments", Json(Reading::simulator)}})
       if (has->contains(member) && !lacks->contains(member)) (*lacks)[member] = Json::array({none});
-  // Rows that ask nobody are the same whoever answers the others.
-  for (auto [asks_none, asks] : {std::pair{&all.request, &more.request}, std::pair{&more.request, &all.request}})
-    if (asks_nobody(*asks_none)) (*asks_none)["answers"] = (*asks)["answers"];
+    if (asks_nobody(*lacks)) (*lacks)["answers"] = has->value("answers", Json());
+  }
   for (const auto& [member, value] : more.request.items()) {
     const bool may_grow = std::count(grid_lists.begin(), grid_lists.end(), member) > 0;
     Json& there = all.request[member];

@@ -20,8 +20,8 @@ document::Section how_to_enter();
 
 /// The first ranking of a preset, for a document from which `board` is the way to the board: each row's success in the
 /// suite's main arm along the demonstrations with 95 % intervals over test scenes and training seeds, then in every arm
-/// at the suite's main number of demonstrations, and the steps where their four rows are there. Of perturbed scenes the
-/// ranking stands in their place.
+/// at the suite's main number of demonstrations, and the steps where their four rows are there. An oracle that always
+/// succeeds has no row. Of perturbed scenes the ranking stands in their place.
 void add_results(document::Section& section, NamedTable table, const fs::path& board);
 
 /// A line for each table of the abstraction track that has the steps: success by what the policy is told, what language

@@ -95,11 +95,11 @@ Grid numbers_grid(const NamedTable& table, const std::string& arm) {
 // Success in every arm at one number of demonstrations, with intervals in the main arm.
 Grid arms_grid(const NamedTable& table, const std::vector<std::string>& arms, const std::string& main, int n,
                bool repeated) {
+  const Titles titles(table.setting.suite);
   Grid grid =
       named_grid(table, "_arms", fmt::format(" in every arm, {} demonstration{}", n, n == 1 ? "" : "s"), repeated);
   for (const std::string& arm : arms)
-    add_column(grid, Titles(table.setting.suite).arm(arm),
-               arm == main ? with_intervals(table, arm, n) : means_of(table, arm, n));
+    add_column(grid, titles.arm(arm), arm == main ? with_intervals(table, arm, n) : means_of(table, arm, n));
   return grid;
 }
 
