@@ -118,7 +118,9 @@ TEST(TestScenes, SetsOfTrainingSeeds) {
 
 TEST(RunRecord, VersionsThatComputeTheSameCells) {
   EXPECT_TRUE(same_cells("0.3.0", "0.3.7"));
+  EXPECT_TRUE(same_cells("0.4.0", "0.5.1"));
   EXPECT_FALSE(same_cells("0.4.0", "0.3.0"));
+  EXPECT_FALSE(same_cells("0.6.0", "0.5.0"));
 }
 
 TEST(Layout, AReportsFilesAreAmongARuns) {

@@ -70,7 +70,7 @@ void write_run_record(const std::filesystem::path& run, const RunRecord& record)
 /// `confinement` of a run in which methods were let out of it, for good: whatever cells of it are computed later.
 constexpr const char* unconfined_run = "none, by --unconfined";
 
-/// Whether two versions of lgabench compute the same cells: they differ in their last number at most.
+/// Whether two versions of lgabench compute the same cells: they differ in their last number alone, or are 0.4 and 0.5.
 bool same_cells(const std::string& version, const std::string& other);
 
 /// Which setting of two runs differs first; data and versions may differ where no setting does.
