@@ -123,6 +123,13 @@ function(lgabench_link_data)
           PATTERN __pycache__ EXCLUDE)
   install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_SOURCE_DIR}/LICENSE
           ${PROJECT_SOURCE_DIR}/SECURITY.md ${PROJECT_SOURCE_DIR}/CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
+  # The terms of what is compiled in; libraries have their own where they are packed (wheel.py).
+  file(GLOB terms /usr/share/doc/libcli11-dev/copyright /usr/share/doc/nlohmann-json3-dev/copyright /usr/share/doc/libboost1.*-dev/copyright)
+  foreach(file ${terms})
+    cmake_path(GET file PARENT_PATH of)
+    cmake_path(GET of FILENAME of)
+    install(FILES ${file} DESTINATION ${CMAKE_INSTALL_DOCDIR}/licenses/${of})
+  endforeach()
   if(LGABENCH_PROGRAMS)  # What a packed leaderboard has beside its entries.
     file(MAKE_DIRECTORY ${share}/archive)
     foreach(source LICENSE CITATION.cff programs/lgabench/leaderboard/archive/README.md)

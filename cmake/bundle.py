@@ -1,13 +1,12 @@
-"""Makes an installed tree run on a bare Debian 12: bundle.py TREE (CPack calls it, CMakeLists.txt). Copies the libraries that its
+"""Makes an installed tree run on a bare system: bundle.py TREE (CPack calls it, CMakeLists.txt). Copies the libraries that its
 programs load, all but glibc's and libstdc++, into lib/, and their licences into share/doc/lgabench/licenses."""
 import pathlib
 import shutil
 import sys
 
-from wheel import SOURCE, is_elf, licences_of, needed, run
+from wheel import LIBTORCHS, SOURCE, is_elf, licences_of, needed, run
 
-# The encoder with LibTorch would be 440 MB more; what comes from the build of tests is no part of a release.
-LEFT_OUT = ("share/lgabench/encoder", "lib/liblgabench_encoder.so", "bin/lgabench-engine-conformance")
+LEFT_OUT = (*LIBTORCHS, "bin/lgabench-engine-conformance")  # which the build of tests makes
 
 
 def tool(name):

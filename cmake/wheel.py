@@ -12,9 +12,9 @@ import zipfile
 
 SOURCE = pathlib.Path(__file__).resolve().parents[1]
 SYSTEM = re.compile(r"(ld-linux|libc|libm|libdl|librt|libpthread|libutil|libresolv|libanl|libstdc\+\+|libgcc_s)(?=[.-])")
-# What needs LibTorch, the encoder and diffusion, would be 440 MB more.
-LEFT_OUT = ("lib/lgabench/plugins/diffusion.so", "include", "lib/cmake", "share/doc", "share/lgabench/encoder", "lib/liblgabench_encoder.so",
-            "bin/lgabench-engine-conformance")
+# What needs LibTorch would be 440 MB more.
+LIBTORCHS = ("lib/lgabench/plugins/diffusion.so", "lib/liblgabench_encoder.so", "share/lgabench/encoder")
+LEFT_OUT = (*LIBTORCHS, "include", "lib/cmake", "share/doc", "bin/lgabench-engine-conformance")
 # OpenCV's core library links BLAS and LAPACK, and nothing here calls them: the reference ones are 10 MB smaller than OpenBLAS.
 REFERENCE_BLAS = ("/usr/lib/x86_64-linux-gnu/blas", "/usr/lib/x86_64-linux-gnu/lapack")
 DESCRIPTION = """A benchmark of language-guided abstraction: scenes to step, as Gymnasium environments too, and the command line.
@@ -47,6 +47,7 @@ def needed(path):
 def copy_package(build, root):
     install = root / "lgabench/_install"
     run("cmake", "--install", build, "--prefix", install)
+    shutil.move(install / "share/doc/lgabench/licenses", root.parent / "licenses")
     for name in LEFT_OUT:
         path = install / name
         shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
@@ -58,7 +59,7 @@ def copy_package(build, root):
     return install
 
 
-def write_about(root, version, tag):
+def write_about(root, version, tag, python):
     about = root / f"lgabench-{version}.dist-info"
     about.mkdir()
     (about / "METADATA").write_text(f"""Metadata-Version: 2.1
@@ -66,7 +67,7 @@ Name: lgabench
 Version: {version}
 Summary: {DESCRIPTION.splitlines()[0]}
 License: Apache-2.0
-Requires-Python: >=3.11
+Requires-Python: =={python}.*
 Requires-Dist: numpy
 Provides-Extra: gym
 Requires-Dist: gymnasium>=1.1; extra == "gym"
@@ -82,11 +83,10 @@ Requires-Dist: h5py; extra == "data"
 
 
 def licences_of(libraries, about):
-    """Each library's terms, as Debian's package of it states them."""
+    """Each library's terms, as Debian's package of it states them, beside those of what is compiled in."""
     folder = about / "licenses"
     folder.mkdir(exist_ok=True)
     shutil.copy(SOURCE / "LICENSE", folder / "LICENSE")
-    shutil.copytree(SOURCE / ".deps/mujoco/licenses", folder / "mujoco", dirs_exist_ok=True)
     for name, file in sorted(libraries.items()):
         paths = [file, file.resolve()]
         paths += [pathlib.Path("/usr", *path.parts[1:]) if path.parts[1] == "lib" else pathlib.Path("/", *path.parts[2:])
@@ -128,7 +128,8 @@ def main(build, out):
                      if root not in file.resolve().parents}
         for path in own:
             run("strip", "--strip-unneeded", path)
-        about = write_about(root, version, f"{tag}-{tag}-linux_x86_64")
+        about = write_about(root, version, f"{tag}-{tag}-linux_x86_64", f"3.{sys.version_info.minor}")
+        shutil.move(work / "licenses", about / "licenses")
         licences_of(libraries, about)
         wheel = work / f"lgabench-{version}-{tag}-{tag}-linux_x86_64.whl"
         pack(root, about, wheel)

@@ -27,7 +27,7 @@ class Release(unittest.TestCase):
         made = subprocess.run(["cpack", "--config", BUILD / "CPackConfig.cmake", "-B", cls.dir / "made"], capture_output=True, text=True)
         assert made.returncode == 0, made.stdout + made.stderr
         cls.archives = sorted((cls.dir / "made").glob("*.tar.gz"))
-        cls.binary = next(file for file in cls.archives if "debian12-x86_64" in file.name)
+        cls.binary = next(file for file in cls.archives if file.name.endswith("-x86_64.tar.gz"))
         with tarfile.open(cls.binary) as archive:
             archive.extractall(cls.dir / "elsewhere", filter="tar")
         (cls.tree,) = (cls.dir / "elsewhere").iterdir()
@@ -66,6 +66,16 @@ class Release(unittest.TestCase):
         bundled = [path for path in (self.tree / "lib").glob("*.so*") if "lgabench" not in path.name and "mujoco" not in path.name]
         self.assertGreater(len(bundled), 5)
         self.assertGreater(len(list(licences.glob("*/copyright"))), 5)
+        for compiled_in in "libcli11-dev", "nlohmann-json3-dev", "libboost1.74-dev":
+            self.assertTrue((licences / compiled_in / "copyright").exists())
+
+    def test_it_lacks_libtorch_and_says_so(self):
+        self.assertEqual([path.name for path in self.tree.rglob("*torch*.so*")], [])
+        self.assertLess(self.binary.stat().st_size, 80e6)
+        for words, status in ([], 1), (["fetch"], 2):
+            said = subprocess.run([self.tree / "bin/lgabench", "encoder", *words], capture_output=True, text=True)
+            self.assertIn("needs LibTorch, which this installation lacks", said.stdout + said.stderr)
+            self.assertEqual(said.returncode, status)
 
 
 if __name__ == "__main__":

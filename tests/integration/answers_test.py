@@ -683,6 +683,8 @@ class Recorded(Case):
         self.assertEqual(json.loads(selection)["commands"][0]["selection"]["onto"]["object_types"], ["hexagon"])
         self.assertIn("expected answers for stack_small_block_on_hexagon",
                       self.call(*run, "refused", "--methods", "lga", expect=2).stderr)
+        said = self.call(*run, "planned", "--methods", "lga,lga_l,lga_s+meaning=named,human", "--answers", "none", "--dry-run").stderr
+        self.assertIn("note: --answers none, and a language model is asked by lga, lga_l, whose cells will fail\n", said)
 
     def selections(self, *more):
         """Method -> the one Selection of its one cell."""

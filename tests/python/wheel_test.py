@@ -131,7 +131,7 @@ class Wheel(unittest.TestCase):
             self.assertTrue((self.site / package / "py.typed").exists())
         self.assertTrue((self.site / "lgabench/_core.pyi").exists())
         licences = {path.name for path in self.site.glob("lgabench-*.dist-info/licenses/*")}
-        self.assertLessEqual({"LICENSE", "mujoco", "libembree3-3", "libx11-6", "libcurl4"}, licences)
+        self.assertLessEqual({"LICENSE", "mujoco", "nanobind", "libcli11-dev", "libembree3-3", "libx11-6", "libcurl4"}, licences)
         self.assertLess(self.wheel.stat().st_size, 55e6)
         self.assertIn("True", self.python("-c", "import lgabench; e = lgabench.Environment('heart'); e.reset('test');"
                                                 "print(e.step(e.expert_action()).success)"))

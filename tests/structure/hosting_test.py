@@ -7,6 +7,7 @@ import os
 import pathlib
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -133,6 +134,26 @@ class Release(unittest.TestCase):
             done = self.release(f"v{self.version}", directory)
             self.assertEqual((done.returncode, os.listdir(directory)), (2, ["kept"]))
         self.assertIn("expected an empty directory", done.stderr)
+
+    def test_what_is_released_is_a_commit(self):
+        with tempfile.TemporaryDirectory() as directory:
+            copy = pathlib.Path(directory) / "copy"
+            for name in ".ci/release", "framework/lgabench/core/version.hpp", "CHANGELOG.md":
+                (copy / name).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(SOURCE / name, copy / name)
+
+            def refused():
+                done = subprocess.run([copy / ".ci/release", f"v{self.version}", "out"], capture_output=True, text=True, cwd=directory,
+                                      env={**os.environ, "GIT_CEILING_DIRECTORIES": directory})
+                self.assertEqual((done.returncode, done.stdout), (2, ""))
+                return done.stderr
+            self.assertIn("expected a clone, whose commit is released", refused())
+            git = ["git", "-C", copy, "-c", "user.name=a", "-c", "user.email=a@example.org"]
+            for words in (["init", "-q"], ["add", "."], ["commit", "-q", "-m", "all"]):
+                subprocess.run([*git, *words], check=True)
+            (copy / "CHANGELOG.md").write_text((copy / "CHANGELOG.md").read_text() + "more\n")
+            self.assertIn("expected no change since the last commit, got  M CHANGELOG.md", refused())
+            self.assertEqual(os.listdir(directory + "/out"), [], "a relative directory is the caller's")
 
 
 if __name__ == "__main__":

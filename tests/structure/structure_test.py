@@ -14,9 +14,9 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.M)
 LIBRARY = ["abstraction", "cell", "core", "drawn", "harness", "host", "job", "learning", "plugin", "record", "statistics", "worker"]
 PROGRAMS = ["cli", "document", "http", "leaderboard", "report", "study"]
 # Lines that are neither blank nor a comment. Who raises one says in the commit's message what that buys.
-BUDGET = {"abstraction": 3950, "cell": 3720, "core": 4810, "drawn": 1470, "harness": 3420, "host": 3710, "job": 370,
-          "learning": 4210, "plugin": 1040, "record": 1300, "statistics": 5170, "worker": 400, "cli": 8150,
-          "document": 1390, "http": 350, "leaderboard": 5890, "report": 3230, "study": 2390}
+BUDGET = {"abstraction": 3950, "cell": 3720, "core": 4815, "drawn": 1470, "harness": 3420, "host": 3705, "job": 370,
+          "learning": 4210, "plugin": 1040, "record": 1290, "statistics": 5165, "worker": 400, "cli": 8165,
+          "document": 1390, "http": 350, "leaderboard": 5890, "report": 3225, "study": 2390}
 ENVIRONMENTS = sorted(file.parent.name for file in (SOURCE / "envs").glob("*/CMakeLists.txt")
                       if "lgabench_environment(" in file.read_text())
 

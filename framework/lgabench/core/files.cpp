@@ -212,6 +212,13 @@ fs::path encoder_directory() {
   return named && *named ? fs::path(named) : data_directory() / "encoder";
 }
 
+bool has_encoder_library() { return fs::exists(library_directory() / "liblgabench_encoder.so"); }
+
+std::string encoder_remedy() {
+  return has_encoder_library() ? "lgabench encoder fetch gets it"
+                               : "it needs LibTorch, which this installation lacks and one by ./install has";
+}
+
 fs::path shipped_plugin_directory() { return library_directory() / "lgabench" / "plugins"; }
 
 }  // namespace lgabench

@@ -62,6 +62,10 @@ fs::path shipped_plugin_directory();
 
 /// Where the sentence encoder's weights are: $LGABENCH_ENCODER, else encoder/ in the data directory. It may not exist.
 fs::path encoder_directory();
+/// Whether this installation has the sentence encoder's library. A release's archive and wheel lack it, with LibTorch.
+bool has_encoder_library();
+/// How this installation gets the sentence encoder: a message's last words.
+std::string encoder_remedy();
 
 /// Directory of the running program.
 fs::path program_directory();

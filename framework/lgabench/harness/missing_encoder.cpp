@@ -13,7 +13,7 @@ namespace lgabench {
 
 std::string missing_encoder(const std::vector<std::string>& commands) {
   std::error_code error;
-  if (fs::exists(encoder_directory() / "model.safetensors", error)) return "";
+  if (has_encoder_library() && fs::exists(encoder_directory() / "model.safetensors", error)) return "";
   const fs::path directory = data_directory() / "embeddings";
   std::set<std::string> committed;
   for (const std::string& name : shipped_names("embeddings")) {
@@ -24,8 +24,8 @@ std::string missing_encoder(const std::vector<std::string>& commands) {
   if (first == commands.end()) return "";
   return fmt::format(
       "\"{}\" has no committed embedding, and the sentence encoder is not in {}: methods that read the command fail; "
-      "lgabench encoder fetch gets it",
-      *first, encoder_directory().string());
+      "{}",
+      *first, encoder_directory().string(), encoder_remedy());
 }
 
 }  // namespace lgabench

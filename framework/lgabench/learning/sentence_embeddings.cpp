@@ -34,11 +34,11 @@ const std::vector<float>& SentenceEmbeddings::of(const std::string& sentence) {
   if (found != embeddings_.end()) return found->second;
   if (!encode_) {
     const fs::path directory = encoder_directory();
-    if (!fs::exists(directory / "model.safetensors"))
-      throw InputError(fmt::format(
-          "\"{}\": expected a sentence with a committed embedding, or the sentence encoder's weights in {}; "
-          "lgabench encoder fetch gets them, $LGABENCH_ENCODER names another directory",
-          sentence, directory.string()));
+    if (!has_encoder_library() || !fs::exists(directory / "model.safetensors"))
+      throw InputError(
+          fmt::format("\"{}\": expected a sentence with a committed embedding, or the sentence encoder in {}; {}, "
+                      "$LGABENCH_ENCODER names another directory",
+                      sentence, directory.string(), encoder_remedy()));
     encode_ = load_encoder()(directory);
   }
   return embeddings_.emplace(sentence, encode_(sentence)).first->second;

@@ -22,6 +22,10 @@ std::string missing_file() {
 }
 
 int show() {
+  if (!has_encoder_library()) {
+    to_stdout("the sentence encoder: {}\n", encoder_remedy());
+    return regression;
+  }
   const std::string directory = encoder_directory().string(), missing = missing_file();
   if (missing.empty())
     to_stdout("{}: all-MiniLM-L6-v2\n", directory);
@@ -32,6 +36,7 @@ int show() {
 
 // Becomes the script that set-up uses too.
 [[noreturn]] void fetch() {
+  if (!has_encoder_library()) throw InputError("the sentence encoder: " + encoder_remedy());
   const std::string script = (data_directory() / "fetch/encoder").string(), directory = encoder_directory().string();
   if (!missing_file().empty()) to_stderr("fetching the sentence encoder, 90 MB, into {}\n", directory);
   ::execlp("bash", "bash", script.c_str(), directory.c_str(), nullptr);
