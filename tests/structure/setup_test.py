@@ -118,7 +118,7 @@ class Seconds(unittest.TestCase):
             (pathlib.Path(directory) / "cmake").mkdir()
             for file in ("steps", "seconds.py"):
                 shutil.copy(SOURCE / "cmake" / file, f"{directory}/cmake/{file}")
-            environment = {name: value for name, value in os.environ.items() if name != "LGABENCH_STEPS"}
+            environment = {name: value for name, value in os.environ.items() if name not in ("LGABENCH_STEPS", "LGABENCH_FULL")}
             return subprocess.run([shutil.which("bash"), "-c", "set -euo pipefail; source cmake/steps; steps_begin\n" + script],
                                   capture_output=True, text=True, cwd=directory, env=environment)
 
