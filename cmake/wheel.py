@@ -59,7 +59,7 @@ def copy_package(build, root):
     return install
 
 
-def write_about(root, version, tag, python):
+def write_about(root, version, tag):
     about = root / f"lgabench-{version}.dist-info"
     about.mkdir()
     (about / "METADATA").write_text(f"""Metadata-Version: 2.1
@@ -67,7 +67,7 @@ Name: lgabench
 Version: {version}
 Summary: {DESCRIPTION.splitlines()[0]}
 License: Apache-2.0
-Requires-Python: =={python}.*
+Requires-Python: ==3.{sys.version_info.minor}.*
 Requires-Dist: numpy
 Provides-Extra: gym
 Requires-Dist: gymnasium>=1.1; extra == "gym"
@@ -128,7 +128,7 @@ def main(build, out):
                      if root not in file.resolve().parents}
         for path in own:
             run("strip", "--strip-unneeded", path)
-        about = write_about(root, version, f"{tag}-{tag}-linux_x86_64", f"3.{sys.version_info.minor}")
+        about = write_about(root, version, f"{tag}-{tag}-linux_x86_64")
         shutil.move(work / "licenses", about / "licenses")
         licences_of(libraries, about)
         wheel = work / f"lgabench-{version}-{tag}-{tag}-linux_x86_64.whl"

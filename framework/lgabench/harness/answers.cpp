@@ -141,12 +141,11 @@ LanguageModel& Answerer::of(const Scenario& scenario, bool to_edit) {
   return nobody_;
 }
 
-void check_forms(const std::vector<Cell>& cells, const Catalogue& catalogue, const AnswerSource& answers,
-                 const fs::path& file) {
+LackingAnswers lacking_answers(const std::vector<Cell>& cells, const Catalogue& catalogue, const AnswerSource& answers,
+                               const fs::path& file) {
   Answerer answerer(answers, file);
   std::set<std::pair<const Json*, std::string>> seen;  // scenario, row
-  std::string reason;
-  std::vector<std::string> rows, lacking;
+  LackingAnswers lacking;
   const auto add = [](const std::string& name, std::vector<std::string>& all) {
     if (!contains(all, name)) all.push_back(name);
   };
@@ -159,14 +158,12 @@ void check_forms(const std::vector<Cell>& cells, const Catalogue& catalogue, con
       for (int c = 0; c < static_cast<int>(scenario.commands.size()); ++c)
         select_as_asked(cell.method.options.value("meaning", "flat"), scenario.command(c), scenario.space, model);
     } catch (const Error& e) {
-      if (reason.empty()) reason = e.what();
-      add(cell.method.name, rows);
-      add(scenario.id, lacking);
+      if (lacking.reason.empty()) lacking.reason = e.what();
+      add(cell.method.name, lacking.rows);
+      add(scenario.id, lacking.scenarios);
     }
   }
-  if (!lacking.empty())
-    throw InputError(
-        fmt::format("{}: {} (scenarios that lack this: {})", fmt::join(rows, ", "), reason, some_of(lacking)));
+  return lacking;
 }
 
 std::vector<AnswerFile> read_participants(const fs::path& directory, bool rehearsal, std::vector<Participant>& all) {

@@ -68,11 +68,15 @@ class Answerer {
   Nobody nobody_;
 };
 
+/// Rows, and scenarios, each once, for which an answer lacks, its form, or that to the task's second set; why the
+/// first.
+struct LackingAnswers {
+  std::vector<std::string> rows, scenarios;
+  std::string reason;
+};
 /// Asks what the cells' methods declare that they ask, in the form of their option `meaning`. `file`: as Answerer's.
-/// @throws InputError where an answer lacks, its form, or that to the task's second set: names the row and the
-/// scenarios.
-void check_forms(const std::vector<Cell>& cells, const Catalogue& catalogue, const AnswerSource& answers,
-                 const std::filesystem::path& file);
+LackingAnswers lacking_answers(const std::vector<Cell>& cells, const Catalogue& catalogue, const AnswerSource& answers,
+                               const std::filesystem::path& file);
 
 /// Every .json of a directory. @throws InputError as read_participant, for a directory without one, and for two files
 /// of one participant. A file of a rehearsal is refused unless `rehearsal`, which marks all of them.

@@ -10,7 +10,7 @@
 #include <lgabench/cli/run_plan.hpp>
 #include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/harness/cell_plugins.hpp>
+#include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/debug_cell.hpp>
 #include <lgabench/harness/missing_encoder.hpp>
 
@@ -105,22 +105,11 @@ bool find_others_causes(const RunPlan& plan, const Catalogue& catalogue, const R
   return causes.has_value();
 }
 
-// Rows that ask a language model although nobody is there to answer.
-std::set<std::string> ask_in_vain(const RunPlan& plan, const Catalogue& catalogue) {
-  std::set<std::string> rows;
-  for (const Cell& cell : plan.cells) {
-    const PluginInfo* const method = method_plugin(cell, catalogue);
-    if (std::holds_alternative<NoAnswers>(cell.answers) && method && method->questionnaire &&
-        cell.method.options.value("meaning", "") != "named")
-      rows.insert(cell.method.name);
-  }
-  return rows;
-}
-
 void print_notes(const RunArguments& a, const RunPlan& plan, const Catalogue& catalogue) {
-  if (const std::set<std::string> rows = ask_in_vain(plan, catalogue); !rows.empty())
-    to_stderr("note: --answers none, and a language model is asked by {}, whose cells will fail\n",
-              fmt::join(rows, ", "));
+  if (plan.request.at("answers") == to_string(NoAnswers()))
+    if (const auto rows = lacking_answers(plan.cells, catalogue, NoAnswers(), "").rows; !rows.empty())
+      to_stderr("note: --answers none, and a language model is asked by {}, whose cells will fail\n",
+                fmt::join(rows, ", "));
   if (const std::string missing = missing_encoder(commands_of(plan)); !missing.empty())
     to_stderr("note: {}\n", missing);
   if (a.scene_seed && !a.quiet)

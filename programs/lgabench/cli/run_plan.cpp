@@ -13,6 +13,7 @@
 #include <lgabench/core/contains.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/shell.hpp>
+#include <lgabench/core/suggest.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/host/python_method.hpp>
 
@@ -250,7 +251,11 @@ PlannedRun plan_run(RunArguments a) {
   if (a.limit != 0 && plan.cells.size() > static_cast<std::size_t>(a.limit))
     plan.cells.resize(static_cast<std::size_t>(a.limit));
   if (!plan.live && !std::holds_alternative<NoAnswers>(variation.answers))
-    check_forms(plan.cells, catalogue, variation.answers, plan.answers.empty() ? fs::path() : plan.answers[0].path);
+    if (const LackingAnswers lacking = lacking_answers(plan.cells, catalogue, variation.answers,
+                                                       plan.answers.empty() ? fs::path() : plan.answers[0].path);
+        !lacking.rows.empty())
+      throw InputError(fmt::format("{}: {} (scenarios that lack this: {})", fmt::join(lacking.rows, ", "),
+                                   lacking.reason, some_of(lacking.scenarios)));
   plan.about = suite.about;
   plan.claims = suite.claims;
   plan.request = to_json(design);
