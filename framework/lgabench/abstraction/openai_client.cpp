@@ -10,6 +10,7 @@
 #include <chrono>
 #include <ctime>
 #include <mutex>
+#include <regex>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -49,6 +50,12 @@ bool is_loopback(const std::string& url) {
   const std::size_t begin = host.find("://") == std::string::npos ? 0 : host.find("://") + 3;
   const auto is = [&](std::string_view name) { return host.compare(begin, name.size(), name) == 0; };
   return is("127.") || is("[::1]") || is("localhost:") || is("localhost/");
+}
+
+// Curl's words without the time that they tell, which differs between threads that wait for the same thing.
+std::string untimed(const std::string& problem) {
+  static const std::regex time(" after [0-9]+ (ms|milliseconds)");
+  return std::regex_replace(problem, time, "");
 }
 
 struct Headers {
@@ -104,7 +111,7 @@ Response post(CURL* handle, const OpenAiOptions& options, const std::string& bod
     response.absent = (code == CURLE_COULDNT_CONNECT && error == ECONNREFUSED) || code == CURLE_COULDNT_RESOLVE_HOST ||
                       code == CURLE_COULDNT_RESOLVE_PROXY || code == CURLE_SSL_CONNECT_ERROR;
     response.problem = too_long ? fmt::format("a reply of more than {} bytes", OpenAiClient::most_bytes)
-                                : (tls ? "TLS: " : "") + std::string(*problem ? problem : curl_easy_strerror(code));
+                                : (tls ? "TLS: " : "") + untimed(*problem ? problem : curl_easy_strerror(code));
     if (!proxy.empty()) response.problem += fmt::format(", through the proxy {}", provider({proxy, ""}));
     return response;
   }
