@@ -49,9 +49,10 @@ class Mobile(Case):
         for suite, scenario in (("mobile", "bring_fruit"), ("q1", "heart"))[:2 if FULL else 1]:
             tiny = ("run", suite, "--scenarios", scenario, "--demos", "1", "--seeds", "0", "--episodes", "1",
                     "--set", "*.epochs=1", "--no-reference")
-            self.call(*tiny, "--methods", ",".join(methods), "--engines", "kinematic", "--out", suite)
+            players = [method for method in methods if suite == "mobile" or method != "person_rule"]  # which reads words of a grammar alone
+            self.call(*tiny, "--methods", ",".join(players), "--engines", "kinematic", "--out", suite)
             self.call(*tiny, "--methods", "lga", "--engines", ",".join(engines), "--out", f"{suite}-engines")
-            for run, count in (suite, len(methods)), (f"{suite}-engines", len(engines)):
+            for run, count in (suite, len(players)), (f"{suite}-engines", len(engines)):
                 self.assert_matches_schemas(run)
                 played = [[json.loads(line)["failure"] for line in file.read_text().splitlines()]
                           for file in (self.dir / run / "cells").glob("*/episodes.jsonl")]
