@@ -36,7 +36,7 @@ Json read_job() {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_FSIZE, 1LL << 28);
   limit(RLIMIT_CPU, limits.cpu_s);
-#if !defined(__SANITIZE_ADDRESS__)  // whose shadow memory counts
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // whose shadow memory counts
   limit(RLIMIT_DATA, limits.data_bytes);
 #endif
   return job;
