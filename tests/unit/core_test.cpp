@@ -381,7 +381,9 @@ TEST(Scenario, RefusesBadInput) {
   EXPECT_SAYS(refusal(json), "mine.json: /environment: no environment \"kitchen\", expected one of: mobile, tabletop");
   json = heart();
   json["commands"][0]["seen"] = false;
-  EXPECT_SAYS(refusal(json), "mine.json: /tests/0: expected a scenario with commands for this arm");
+  EXPECT_SAYS(refusal(json), "mine.json: /commands: expected at least one seen command");
+  json["commands"] = Json::array();
+  EXPECT_SAYS(refusal(json), "mine.json: /commands: expected at least one seen command");
   json = heart();
   json["tests"].push_back({{"arm", "test"}});
   EXPECT_SAYS(refusal(json), "mine.json: /tests/1/arm: expected each arm once");

@@ -268,6 +268,7 @@ Scenario read_scenario(const Json& json, const std::string& file) {
   }
   s.space = read_space(reader.at("feature_space"));
   for (const JsonReader& command : reader.at("commands").elements()) s.commands.push_back(read_command(command, s));
+  if (s.commands_of("train").empty()) reader.at("commands").fail("at least one seen command");
   expect_words(reader.at("commands"), s);
   expect_wordings(reader.at("commands"), s);
   s.answers_of = reader.has("answers_of") ? reader.at("answers_of").string() : s.id;
@@ -300,7 +301,6 @@ Scenario read_scenario(const Json& json, const std::string& file) {
   expect_arms(reader.at("commands"), s);
   if (s.tests.empty()) reader.at("tests").fail("at least one arm");
   if (reader.has("played")) expect_played(reader.at("played"), s);
-  if (s.commands_of("train").empty()) reader.at("commands").fail("at least one seen command");
   s.json = json;
   keep_axes_of_arms(s);
   add_words(s);
