@@ -10,10 +10,12 @@
 #include <iostream>
 #include <iterator>
 #include <new>
+#include <string_view>
 
 #include <lgabench/core/exit_status.hpp>
 #include <lgabench/core/refused.hpp>
 #include <lgabench/host/host_session.hpp>
+#include <lgabench/plugin/fingerprint.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench::worker {
@@ -36,9 +38,8 @@ Json read_job() {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_FSIZE, 1LL << 28);
   limit(RLIMIT_CPU, limits.cpu_s);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // whose shadow memory counts
-  limit(RLIMIT_DATA, limits.data_bytes);
-#endif
+  // A sanitizer's shadow memory would count.
+  if constexpr (std::string_view(LGABENCH_SANITIZER) == "none") limit(RLIMIT_DATA, limits.data_bytes);
   return job;
 }
 
