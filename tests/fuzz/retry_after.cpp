@@ -23,7 +23,8 @@ void expect_a_bearable_wait(const std::string& said) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace lgabench;
   static auto& server = *new fuzz::Server;
-  static OpenAiClient client({server.url(), "", 2, 0, 10, expect_a_bearable_wait});
+  // A client says the same wait once, and waits itself the second time.
+  OpenAiClient client({server.url(), "", 2, 0, 10, expect_a_bearable_wait});
   server.give("HTTP/1.1 429 Too Many Requests\r\nConnection: close\r\nRetry-After: " +
               std::string(fuzz::text_of(data, size)) + "\r\n\r\nbusy");
   try {
