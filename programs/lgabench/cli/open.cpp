@@ -23,16 +23,17 @@ namespace {
 
 constexpr int deepest = 3, renewed_s = 3;  // directories below the one that is looked in
 
-bool is_set(const char* variable) {
+// The variable's value; nothing where it is not set.
+std::string value_of(const char* variable) {
   const char* const value = std::getenv(variable);
-  return value && *value;
+  return value ? value : "";
 }
 
 // In a session of its own, so that a browser outlives this program. Where there is none, the address was printed.
 void show(const std::string& address) {
-  const bool has_display = is_set("DISPLAY") || is_set("WAYLAND_DISPLAY");
-  if (!is_set("BROWSER") && !has_display) return;
-  const std::string browser = is_set("BROWSER") ? std::getenv("BROWSER") : "xdg-open";
+  const bool has_display = !value_of("DISPLAY").empty() || !value_of("WAYLAND_DISPLAY").empty();
+  const std::string named = value_of("BROWSER"), browser = named.empty() ? "xdg-open" : named;
+  if (named.empty() && !has_display) return;
   const Descriptor null(::open("/dev/null", O_RDWR | O_CLOEXEC));
   try {
     wait_for(start_process(
