@@ -247,10 +247,10 @@ TEST_F(StudySession, EditsOfTheProposalGiveWhatIsSubmitted) {
   page.ms += 10;
   post("submit", submitted({"star", "heart"}, {"dark red", "red", "dark red swirl"}));
   const auto last = [this] {
-    const Trial* found = nullptr;
+    std::optional<Trial> found;
     for (const Trial& trial : session->all())
-      if (trial.state == Trial::finished) found = &trial;
-    return *found;
+      if (trial.state == Trial::finished) found = trial;
+    return found.value();
   };
   EXPECT_TRUE(last().edits_agree);
   EXPECT_EQ(last().edits, 2);
