@@ -31,10 +31,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace lgabench;
   if (size > fuzz::most_said) return 0;
   const std::string bytes = with_checksums(std::string(fuzz::text_of(data, size)));
-  auto [ours, theirs] = fuzz::ends();
-  if (::send(theirs.fd, bytes.data(), bytes.size(), MSG_DONTWAIT) != static_cast<ssize_t>(bytes.size())) return 0;
-  theirs.close();
-  Channel channel = fuzz::channel_of(std::move(ours));
+  fuzz::Ends ends = fuzz::ends();
+  if (::send(ends.theirs.fd, bytes.data(), bytes.size(), MSG_DONTWAIT) != static_cast<ssize_t>(bytes.size())) return 0;
+  ends.theirs.close();
+  Channel channel = fuzz::channel_of(std::move(ends.ours));
   try {
     while (const std::optional<Frame> frame = channel.receive()) canonical(frame->type());
   } catch (const Malformed&) {

@@ -16,8 +16,11 @@ namespace lgabench::fuzz {
 constexpr std::size_t most_said = 1 << 14, most_frames = 64;
 
 /// Two connected sockets.
-inline std::pair<Descriptor, Descriptor> ends() {
-  int pair[2] = {-1, -1};
+struct Ends {
+  Descriptor ours, theirs;
+};
+inline Ends ends() {
+  int pair[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0) throw InputError("socketpair");
   return {Descriptor(pair[0]), Descriptor(pair[1])};
 }
