@@ -7,7 +7,8 @@
 namespace lgabench::study {
 
 /// A shipped protocol with its blanks filled, and a consent file, in `directory`.
-inline fs::path ready_protocol(const fs::path& directory, const std::string& name, Json changes = Json::object()) {
+inline fs::path ready_protocol(const fs::path& directory, const std::string& name,
+                               const Json& changes = Json::object()) {
   std::string text = read_file(data_directory() / "protocols" / (name + ".json.in"));
   text.replace(text.find("@SEED@"), 6, "7");
   if (const std::size_t at = text.find("@PAIRS@"); at != text.npos) text.replace(at, 7, "[]");
