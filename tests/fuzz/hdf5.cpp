@@ -27,12 +27,12 @@ class Id {
   hid_t id_;
 };
 
-// A number stands for an integer of so many bytes.
+// A number stands for an integer of so many bytes. With more, as a negative one is, the library's own sums overflow.
 hid_t type_of(const Json& said) {
   if (said == "f4") return H5Tcopy(H5T_IEEE_F32LE);
   if (said == "f8") return H5Tcopy(H5T_IEEE_F64LE);
   const hid_t type = H5Tcopy(said == "text" ? H5T_C_S1 : H5T_STD_U8LE);
-  if (said.is_number_integer()) H5Tset_size(type, said.get<std::size_t>());
+  if (said.is_number_unsigned() && said <= 1 << 30) H5Tset_size(type, said.get<std::size_t>());
   return type;
 }
 
