@@ -50,7 +50,7 @@ TEST_P(Words, ThePictureShowsTheTargetAlone) {
       const Scene scene = sample_scene(scenario, request(arm), i);
       EXPECT_EQ(grounded(truth, drawn(scene)), std::vector<std::uint8_t>{target_of(scene).instance_id}) << arm << i;
       for (const SceneObject& object : scene.objects)
-        EXPECT_FALSE(holds(content_of(scenario, scene.arm).undecided, object))
+        EXPECT_FALSE(holds(tabletop::content_of(scenario, scene.arm).undecided, object))
             << object.object_type << " " << object.texture;
     }
 }
@@ -58,7 +58,7 @@ TEST_P(Words, ThePictureShowsTheTargetAlone) {
 TEST_P(Words, EveryTestSceneHasWhatACarelessReadingKeeps) {
   for (int i = 0; i < 12; ++i) {
     const Scene scene = sample_scene(scenario, request("test"), i);
-    const auto& near = content_of(scenario, scene.arm).near_miss_sets;
+    const auto& near = tabletop::content_of(scenario, scene.arm).near_miss_sets;
     const auto misleads = [&](const SceneObject& object) {
       const bool target = object.role == role::target;
       return !target && (holds(near, object) || (truth.which && truth.belongs(object.object_type, object.texture)));

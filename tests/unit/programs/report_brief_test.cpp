@@ -83,7 +83,7 @@ TEST(Brief, ArmsThatDoNotFitGiveWayToTheMainOneAndTheMean) {
     for (std::size_t i = 0; i < arms; ++i) spec.arms.push_back({"arm_" + std::to_string(i), i == 0 ? 20 : 10});
     run.add(spec);
     const std::vector<std::string> lines = lines_of(run);
-    const std::string head = lines.at(0), row = lines.at(1);
+    const std::string &head = lines.at(0), &row = lines.at(1);
     if (arms == 2) {
       EXPECT_EQ(row, "  LGA                1.00 [0.84, 1.00]  0.50 [0.30, 0.70]");
     } else if (arms == 6) {

@@ -41,7 +41,7 @@ TEST(PairStudy, KrippendorffsAlphaIsThatOfHisExample) {
 class PairProtocol : public testing::Test, public TemporaryDirectory {
  protected:
   // With one command, of which two pairs are open.
-  fs::path small(Json changes = Json::object()) {
+  fs::path small(const Json& changes = Json::object()) {
     Json json{{"sets",
                {{{{"scenario", "something_with_a_hole_in_the_middle"},
                   {"asked_as", "Bring me something with a hole in the middle."},
